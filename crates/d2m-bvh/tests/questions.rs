@@ -5,7 +5,9 @@ use d2m_bvh::{
     Start, StartState, TimeOfContact, TriMesh, Window, clearance, contact_spans, departure, time_of_contact,
 };
 use d2m_feature::triangle_distance;
-use d2m_motion::{ConstantTwist, Keyframes, Pose, RigidMotion, Span};
+use d2m_motion::{
+    Chain, Composed, ConstantTwist, Joint, JointKind, JointValue, Keyframes, Pose, RigidMotion, Span,
+};
 use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
 
@@ -381,6 +383,32 @@ fn boxes_with_common_planes_are_followed_through_each_other() {
     assert_eq!(statuses, [SpanStatus::Clear, SpanStatus::Contact, SpanStatus::Clear]);
     // Sides of two: they meet at a distance of two and part at two.
     assert!((spans[1].from - 0.25).abs() < 2e-6 && (spans[1].to - 0.75).abs() < 2e-6, "{spans:?}");
+}
+
+/// A body that gains speed while it slides over a face, alone and in a frame that turns with both: a straight way would leave it within
+/// a part of the window that is as small as the root of the tolerance, thousands of times.
+#[test]
+fn what_gains_speed_on_a_face_is_followed_in_long_steps() {
+    let plate = cuboid(DVec3::new(4.0, 4.0, 1.0));
+    let foot = TriMesh::try_new(vec![DVec3::ZERO, DVec3::new(0.1, 0.0, 1.0), DVec3::Z], vec![[0, 1, 2]]);
+    let foot = MeshTree::new(foot.unwrap());
+    let value = JointValue::try_polynomial(vec![-0.5, 0.3, 2.0, -0.7]).unwrap();
+    let joint = Joint::try_new(
+        DVec3::Z,
+        DQuat::IDENTITY,
+        JointKind::Prismatic { axis: DVec3::new(0.6, 0.8, 0.0), value },
+    );
+    let sliding = Chain::try_new(vec![joint.unwrap()]).unwrap();
+    let turning =
+        ConstantTwist::try_new(DVec3::Y, DQuat::IDENTITY, DVec3::X, DVec3::new(1.0, 3.0, -2.0)).unwrap();
+    let options = QueryOptions::default().with_budget(Budget::UNLIMITED.with_node_tests(1_500_000));
+    for frame in [ConstantTwist::REST, turning] {
+        let (a, b) = (Composed::new(frame, sliding.clone()), Composed::new(frame, ConstantTwist::REST));
+        let foot = Moving::new(&foot, &a).with_solid(Solid::Surface);
+        let spans = contact_spans(foot, Moving::new(&plate, &b), Window::UNIT, &options, None).unwrap();
+        let [only] = &spans[..] else { panic!("{spans:?}") };
+        assert_eq!(only.status, SpanStatus::Contact, "{spans:?}");
+    }
 }
 
 /// From gaps that no pose resolves to those above the tolerance, with numbers that are exact and with others: what is stated as no distance is

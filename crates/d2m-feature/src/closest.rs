@@ -34,6 +34,21 @@ fn orthogonal(v: DVec3, edge: DVec3) -> DVec3 {
     once - edge * (once.dot(edge) / square)
 }
 
+/// Weights of the corners of a triangle for its point closest to another one, to rounding: a guess, which proves nothing. Not negative, with a sum
+/// of one to rounding.
+///
+/// ```
+/// use d2m_feature::closest_weights;
+/// use glam::{DVec3, dvec3};
+/// let triangle = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Y * 4.0];
+/// assert_eq!(closest_weights(dvec3(1.0, 1.0, 3.0), &triangle), [0.5, 0.25, 0.25]);
+/// assert_eq!(closest_weights(dvec3(5.0, -1.0, 0.0), &triangle), [0.0, 1.0, 0.0]);
+/// ```
+pub fn closest_weights(point: DVec3, triangle: &[DVec3; 3]) -> [f64; 3] {
+    let [a, b, c] = *triangle;
+    point_triangle(point, triangle, (b - a).cross(c - a)).b
+}
+
 /// The point of a triangle closest to `p`. Sound for any triangle: the face is used only if the projection is inside
 /// by exact-sign-free tests and closer than all three edges.
 pub(crate) fn point_triangle(p: DVec3, triangle: &[DVec3; 3], normal: DVec3) -> ClosestPair {

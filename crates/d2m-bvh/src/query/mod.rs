@@ -14,6 +14,7 @@ mod report;
 mod rounded;
 mod spans;
 mod staying;
+mod staying_curved;
 mod staying_inside;
 mod staying_walk;
 mod time_of_contact;

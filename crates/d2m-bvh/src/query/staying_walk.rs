@@ -5,6 +5,7 @@
 use super::concluded::{Claimed, conclude_of_triangles, conclude_overlap};
 use super::meshes::of_meshes;
 use super::staying::StraightPair;
+use super::staying_curved::CurvedPair;
 use super::staying_inside::DeepPoint;
 use crate::{Budget, Meter, Moving, Posed, QueryError, QueryOptions, Solid, TimeOfContact, Window};
 use d2m_mesh::at_rest::{Nearness, near_pair};
@@ -19,6 +20,8 @@ const PAIR_STEPS: u64 = 4096;
 const LONG: f64 = 64.0;
 /// Longer by so much are spans after one that was proven.
 const GROWTH: f64 = 4.0;
+/// After a span that was not proven longer so many are tried as long as the last one.
+const SETTLED: u32 = 8;
 /// And shorter by so much those in which a point that is inside of both bodies may come too far.
 const SHORTER: f64 = 0.75;
 /// A search stops at most 3.3 tolerances above the separation: bodies that are further apart than that do not stop it at once.
@@ -54,6 +57,8 @@ pub(super) struct Walk<'a> {
     /// The pair that proved the last contact, and how long it was good for.
     pair: Option<[u32; 2]>,
     span: f64,
+    /// Spans that are still taken as long as the last one, since a longer one was not proven.
+    settled: u32,
     /// The last span was proven by a point inside of both.
     is_deep: bool,
 }
@@ -77,6 +82,7 @@ impl<'a> Walk<'a> {
             meter: Meter::new(&options.budget.with_node_tests(most)),
             pair: None,
             span: 0.25 * window.length(),
+            settled: 0,
             is_deep: false,
         }
     }
@@ -166,7 +172,8 @@ impl<'a> Walk<'a> {
     }
 
     fn stays(&self, pair: [u32; 2], from: f64, to: f64) -> bool {
-        let stays = StraightPair::new(&self.bodies, pair, from, to).stay_within(self.level);
+        let stays = StraightPair::new(&self.bodies, pair, from, to).stay_within(self.level)
+            || to > from && CurvedPair::new(&self.bodies, pair, from, to).stay_within(self.level);
         #[cfg(feature = "audit")]
         if stays {
             use d2m_mesh::audit::{Place, Promise};
@@ -311,13 +318,16 @@ impl<'a> Walk<'a> {
             let to = (from + span).min(end);
             if self.stays(pair, from, to) {
                 best = to;
-                if to >= end {
+                if to >= end || self.settled > 0 {
+                    self.settled = self.settled.saturating_sub(1);
                     break;
                 }
                 span *= GROWTH;
             } else if best > from {
+                self.settled = SETTLED;
                 break;
             } else {
+                self.settled = 0;
                 span /= GROWTH;
             }
         }

@@ -3,7 +3,7 @@
 //! docs/theory/features.md, "Any C² motion", derives the formulas, bounds and roundings of this file.
 use super::bounds::length;
 use crate::rounding::{UNIT, UP};
-use crate::{Ball, CertifiedState, PathJet, Remainder, RigidMotion};
+use crate::{Ball, CertifiedState, Kinematics, PathJet, Remainder, RigidMotion};
 use d2m_interval::Interval;
 use glam::{DMat3, DVec3};
 
@@ -77,6 +77,25 @@ impl RelativeState {
         let linear_rates = [rate_a.linear, rate_b.linear].map(Ball::around_box);
         let angular_rates = [rate_a.angular, rate_b.angular].map(Ball::around_box);
         Self::from_balls(&sa, &sb, linear_rates, angular_rates, h)
+    }
+
+    /// Of the states of A and B at one time, and of what encloses their rates within `h` of it: jets hold there. The states may be about any
+    /// point that both share, and in any unit of time that the rates share.
+    ///
+    /// ```
+    /// use d2m_interval::Interval;
+    /// use d2m_motion::{ConstantTwist, RelativeState, RigidMotion};
+    /// use glam::DVec3;
+    /// let far = DVec3::X * 1e9;
+    /// let falling = ConstantTwist::REST.with_position(far + DVec3::Z).with_linear_velocity(-DVec3::Z);
+    /// let resting = ConstantTwist::REST.with_position(far);
+    /// let [a, b] = [falling, resting].map(|motion| motion.enclose_state_about(0.5, far));
+    /// let over = [falling, resting].map(|motion| motion.enclose_kinematics(Interval::UNIT));
+    /// let jet = RelativeState::of_states([&a, &b], [&over[0], &over[1]], 0.5).point_jet(DVec3::X, 1.0, 1.0);
+    /// assert_eq!((jet.p, jet.v), (DVec3::new(1.0, 0.0, 0.5), -DVec3::Z));
+    /// ```
+    pub fn of_states([a, b]: [&CertifiedState; 2], over: [&Kinematics; 2], h: f64) -> Self {
+        Self::from_balls(a, b, over.map(|rates| rates.linear_rate), over.map(|rates| rates.angular_rate), h)
     }
 
     pub(super) fn from_balls(
