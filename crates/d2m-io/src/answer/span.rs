@@ -74,27 +74,28 @@ impl ProvenSpan {
 /// let spans = proven_spans(&TimeOfContact::Undecided { clear_until: 0.25 }, Window::UNIT);
 /// assert_eq!(spans.iter().map(|span| span.holds).collect::<Vec<_>>(), [Holds::Clear, Holds::Undecided]);
 /// assert_eq!((spans[0].to, spans[1].to), (0.25, 1.0));
+/// // Nothing is known even of the first time.
+/// let nothing = proven_spans(&TimeOfContact::Undecided { clear_until: 0.0 }, Window::UNIT);
+/// assert_eq!(nothing.iter().map(|span| span.holds).collect::<Vec<_>>(), [Holds::Undecided]);
 /// ```
 pub fn proven_spans(verdict: &TimeOfContact, window: Window) -> Vec<ProvenSpan> {
     let (start, end) = (window.start(), window.end());
     let clear = |until: f64| ProvenSpan::new(start, until, Holds::Clear, "proven apart");
+    // Before the first time of the window there is nothing that could be clear.
+    let clear_before = |time: f64| (time > start).then(|| clear(time));
     match verdict {
         TimeOfContact::Separated => vec![clear(end)],
         TimeOfContact::Undecided { clear_until } => {
             let rest =
                 ProvenSpan::new(*clear_until, end, Holds::Undecided, "not decided: the budget ran out");
-            vec![clear(*clear_until), rest]
+            clear_before(*clear_until).into_iter().chain([rest]).collect()
         }
         TimeOfContact::Contact(contact) => {
             let after = "after the first contact: not examined";
-            let mut spans = vec![
-                ProvenSpan::new(contact.time_lo, contact.time_hi, Holds::Contact, contact_text(contact)),
-                ProvenSpan::new(contact.time_hi, end, Holds::Unknown, after),
-            ];
-            if contact.time_lo > start {
-                spans.insert(0, clear(contact.time_lo));
-            }
-            spans
+            let met =
+                ProvenSpan::new(contact.time_lo, contact.time_hi, Holds::Contact, contact_text(contact));
+            let rest = ProvenSpan::new(contact.time_hi, end, Holds::Unknown, after);
+            clear_before(contact.time_lo).into_iter().chain([met, rest]).collect()
         }
     }
 }
@@ -106,5 +107,24 @@ const fn contact_text(contact: &Contact) -> &'static str {
         StartState::Overlapping => "overlapping at the start",
         StartState::Contained => "one inside the other at the start",
         StartState::Undecided => "meeting at the start, touching or overlapping",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where nothing is proven of the first time, none of the spans is clear; what is separated at a single time is clear then.
+    #[test]
+    fn no_span_of_no_length_is_clear_unless_that_is_all() {
+        let window = Window::try_new(0.5, 1.0).unwrap();
+        let holds = |verdict: &TimeOfContact, window: Window| {
+            proven_spans(verdict, window).iter().map(|span| span.holds).collect::<Vec<_>>()
+        };
+        let undecided = |clear_until: f64| holds(&TimeOfContact::Undecided { clear_until }, window);
+        assert_eq!(undecided(0.5), [Holds::Undecided]);
+        assert_eq!(undecided(0.75), [Holds::Clear, Holds::Undecided]);
+        let moment = Window::try_new(0.5, 0.5).unwrap();
+        assert_eq!(holds(&TimeOfContact::Separated, moment), [Holds::Clear]);
     }
 }
