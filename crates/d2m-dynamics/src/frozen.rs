@@ -5,6 +5,7 @@ use d2m_bvh::{
     Contact, Distance, DistanceOptions, MeshError, MeshTree, Posed, QueryError, QueryOptions, Solid, TriMesh,
     Window, distance_within,
 };
+use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::ConstantTwist;
 use d2m_world::{Body, FirstContact, Group, PlannedMotion, World, WorldError};
 use glam::DVec3;
@@ -158,16 +159,18 @@ impl Frozen {
         let point = Arc::new(MeshTree::new(TriMesh::point(DVec3::ZERO)?));
         let body = world.add(Body::new(point, motion));
         let plan = [PlannedMotion { body, motion: Arc::new(motion) }];
-        let length = way.length();
+        // A part of the way, as a length that is rounded outward.
+        let length = IntervalVec3::point(way).norm();
+        let along = |part: f64| length * Interval::point(part);
         Ok(match world.first_contact_of(&plan, Window::UNIT)? {
             FirstContact::Separated => RayAnswer::Free,
             FirstContact::Undecided { clear_until, .. } => {
-                RayAnswer::Undecided { free_until: (clear_until * length).next_down().max(0.0) }
+                RayAnswer::Undecided { free_until: along(clear_until).lo().max(0.0) }
             }
             FirstContact::Contact { a, contact, .. } => {
                 // The point was added last, so it is the second one.
                 let Contact { time_lo, time_hi, point_a, normal, .. } = contact;
-                let (lo, hi) = ((time_lo * length).next_down().max(0.0), (time_hi * length).next_up());
+                let (lo, hi) = (along(time_lo).lo().max(0.0), along(time_hi).hi());
                 RayAnswer::Hit { body: self.id(a), lo, hi, point: point_a, normal }
             }
         })

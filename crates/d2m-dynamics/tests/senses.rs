@@ -2,11 +2,14 @@
 
 mod ground;
 
-use d2m_bvh::{MeshTree, QueryOptions, StartState, TriMesh};
+use d2m_bvh::{MeshTree, QueryOptions, StartState, TriMesh, Window};
 use d2m_dynamics::{
     Body, BodyId, Joint, Kind, Mass, MassProperties, Part, Presence, RayAnswer, Simulation, SimulationError,
     SimulationOptions, TouchChange,
 };
+use d2m_interval::{Interval, IntervalVec3};
+use d2m_motion::ConstantTwist;
+use d2m_world::PlannedMotion;
 use glam::{BVec3, DMat3, DVec3};
 use ground::{at, cube, floor, rest, tree};
 use std::sync::Arc;
@@ -100,6 +103,27 @@ fn rays_meet_what_is_there_now() {
     simulation.remove(far);
     assert_eq!(hit(&simulation, DVec3::X * 10.0), RayAnswer::Free);
     assert!(simulation.frozen(d2m_bvh::QueryOptions::default()).ray(DVec3::NAN, DVec3::X).is_err());
+}
+
+/// The length of a way is rounded: what is said to be free of it, and where it has met a body, holds for the true one.
+#[test]
+fn lengths_along_rays_are_rounded_outward() {
+    let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
+    simulation.add(&Body::new("cube", cube()).with_position(DVec3::X * 3.0)).unwrap();
+    let now = simulation.frozen(QueryOptions::default());
+    let point = Arc::new(MeshTree::new(TriMesh::point(DVec3::ZERO).unwrap()));
+    for k in 0..100 {
+        let way = DVec3::new(10.0, 0.003 * f64::from(k), 0.2 - 0.0017 * f64::from(k));
+        let motion = ConstantTwist::REST.with_linear_velocity(way);
+        let mut world = now.world().clone();
+        let body = world.add(d2m_world::Body::new(Arc::clone(&point), motion));
+        let plan = [PlannedMotion { body, motion: Arc::new(motion) }];
+        let found = world.first_contact_of(&plan, Window::UNIT).unwrap();
+        let contact = found.contact().unwrap();
+        let RayAnswer::Hit { lo, hi, .. } = now.ray(DVec3::ZERO, way).unwrap() else { panic!("{way}") };
+        let along = |part: f64| IntervalVec3::point(way).norm() * Interval::point(part);
+        assert!(lo <= along(contact.time_lo).lo() && along(contact.time_hi).hi() <= hi, "{way}");
+    }
 }
 
 /// A belt takes along what lies on it, and on an awake island the one beside is not moved.
