@@ -233,10 +233,10 @@ impl Pair {
         &self,
         motions: [&dyn RigidMotion; 2],
         window: Window,
-        resolution: f64,
+        resolution: Option<f64>,
     ) -> Result<Vec<ContactSpan>, Failure> {
         let [a, b] = self.moving(motions, "spans")?;
-        let spans = contact_spans(a, b, window, &self.options, Some(resolution));
+        let spans = contact_spans(a, b, window, &self.options, resolution);
         spans.map_err(|error| bad_input(error, motions, window))
     }
 

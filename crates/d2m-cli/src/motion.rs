@@ -53,7 +53,7 @@ pub(crate) fn require_window(place: &str, motion: &AnyMotion, window: Window) ->
     covered.map(|_| ()).map_err(|outside| Failure::at(place, outside))
 }
 
-/// Reads `t0,t1`; an empty or reversed window is refused.
+/// Reads `t0,t1`; a reversed window is refused, one of no length is a single time.
 fn parse_window(text: &str) -> Result<Window, Failure> {
     let fault = |reason: String| Failure::at("--window", reason);
     let Some((start, end)) = text.split_once(',') else {
@@ -63,9 +63,5 @@ fn parse_window(text: &str) -> Result<Window, Failure> {
     };
     let number = |word: &str| word.trim().parse().map_err(|_| fault(format!("{word:?} is not a number")));
     let (start, end) = (number(start)?, number(end)?);
-    let window = Window::try_new(start, end).map_err(|error| fault(error.to_string()))?;
-    if window.length() <= 0.0 {
-        return Err(fault(format!("the window from {start:?} to {end:?} is empty")));
-    }
-    Ok(window)
+    Window::try_new(start, end).map_err(|error| fault(error.to_string()))
 }

@@ -283,7 +283,6 @@ fn bad_input_is_named_and_leaves_nothing() {
     assert!(!folder.names().iter().any(|name| name.starts_with("out") || name.contains("tmp")));
 
     for (option, value, word) in [
-        ("--window", "1,1", "empty"),
         ("--window", "1,0", "reversed"),
         ("--window", "0,inf", "finite"),
         ("--window", "0", "T0,T1"),
@@ -344,6 +343,23 @@ fn inputs_and_read_only_files_are_not_replaced() {
         assert_eq!(d2m(&[&batch[..], &[&link]].concat()).status.code(), Some(0));
         assert!(Path::new(&link).is_symlink());
         assert!(fs::read_to_string(&target).unwrap().starts_with(HEADER));
+    }
+}
+
+/// A window of no length is a single time: the same answers as of any other window, proven again where that is wanted.
+#[test]
+fn a_window_may_be_a_single_time() {
+    let ask = |command: &str, window: &str, more: &[&str]| {
+        let motion = "x=-3,0,0;v=4,0,0";
+        let words = [command, UNIT_BOX, UNIT_BOX, "--motion-a", motion, "--window", window];
+        stdout(&d2m(&[&words[..], more].concat()))
+    };
+    for (time, answers) in [("0.1,0.1", ["SEPARATED", "clear"]), ("0.75,0.75", ["CONTACT", "contact"])] {
+        assert!(ask("toc", time, &["--verify"]).contains(answers[0]), "{time}");
+        assert!(ask("spans", time, &[]).contains(answers[1]), "{time}");
+        let spans = ask("spans", time, &["--json", "--verify"]);
+        assert!(spans.contains("\"resolution\":0.0") && spans.contains(answers[1]), "{spans}");
+        assert!(ask("clearance", time, &["--json"]).contains(answers[1]), "{time}");
     }
 }
 

@@ -16,7 +16,7 @@ use d2m::{BodyId, PairSpans, join_spans};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// The resolution as a part of the window.
+/// The resolution as a part of the window, if none is given; zero of a single time.
 const RESOLUTION: f64 = 1e-6;
 
 /// Runs the command.
@@ -30,8 +30,8 @@ pub(crate) fn run(arguments: &SpansArguments) -> Result<Outcome, Failure> {
         return run_scene(toc, resolution);
     }
     let MovingPair { pair, motion_a, motion_b, window, travels, .. } = read(toc)?;
-    let resolution = resolution.unwrap_or(RESOLUTION * window.length());
     let spans = pair.spans([&motion_a, &motion_b], window, resolution)?;
+    let resolution = resolution.unwrap_or(RESOLUTION * window.length());
     let ends = [window.start(), window.end()];
     let (text, json) = (to_text(&spans), spans.iter().map(to_json).collect::<Vec<Value>>());
     let promise = Promise::Spans { spans: spans.clone(), resolution };
@@ -57,9 +57,9 @@ fn outcome_of(spans: &[ContactSpan]) -> Outcome {
 /// The spans of all pairs of a scene together, and of each that is not clear all the time.
 fn run_scene(toc: &TocArguments, resolution: Option<f64>) -> Result<Outcome, Failure> {
     let SceneQuestion { scene, world, options } = SceneQuestion::read(toc)?;
-    let resolution = resolution.unwrap_or(RESOLUTION * scene.window.length());
-    let pairs = world.contact_spans(scene.window, Some(resolution));
+    let pairs = world.contact_spans(scene.window, resolution);
     let pairs = pairs.map_err(|error| Failure::at(&toc.a, scene.describe(error)))?;
+    let resolution = resolution.unwrap_or(RESOLUTION * scene.window.length());
     let all = join_spans(scene.window, &pairs);
     let name = |id: BodyId| scene.bodies[id.index()].name.as_str();
     let list = |spans: &[ContactSpan]| spans.iter().map(to_json).collect::<Vec<Value>>();
