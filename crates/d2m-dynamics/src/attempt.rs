@@ -6,9 +6,11 @@ use crate::contact::{
 };
 use crate::joined::Joined;
 use crate::momenta::Momenta;
+use crate::pull::{couples, pulls, work};
 use crate::rigid_body::{RigidBody, Splits};
+use crate::turning::Pull;
 use crate::velocity::Velocity;
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 use std::borrow::Cow;
 
 /// Residuals below this part of a gap a step are those of a solution.
@@ -23,6 +25,10 @@ const CORRECTIONS: u32 = 3;
 const CROWD_CORRECTIONS: u32 = 1;
 /// And with the ends of jointed bodies' flights put right.
 const JOINT_CORRECTIONS: u32 = 8;
+/// Solutions, of these, whose impulses may brake what swings fast: the first one has no brakes, and what it has is rarely the force.
+const PULLS: u32 = 2;
+/// The part of twice the kinetic energy that the brakes of a flight may add: in a hundred flights not more than a hundredth.
+const WORK: f64 = 1.0 / 16384.0;
 /// Ratio of masses up to which jointed bodies are alike.
 const LIKE: f64 = 4.0;
 /// Moved bodies of an island from which on it flies to the end of the step however its bodies tumble.
@@ -74,6 +80,13 @@ enum Friction {
     GivesWay,
 }
 
+/// Is the turning of jointed bodies braked, where it is faster than flights?
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Brakes {
+    None,
+    OfSwings,
+}
+
 /// What velocities are solved for.
 #[derive(Clone, Copy)]
 pub(crate) struct Problem<'s> {
@@ -96,6 +109,8 @@ pub(crate) struct Attempt {
     pub(crate) targets: Vec<f64>,
     pub(crate) pushing: Vec<f64>,
     pub(crate) system: System,
+    /// Of each member.
+    pulled: Vec<Option<Pull>>,
     pub(crate) accuracy: Accuracy,
     pub(crate) residual: f64,
     /// How far joints are off what they ask for at the end, as a rate.
@@ -103,6 +118,12 @@ pub(crate) struct Attempt {
 }
 
 impl Attempt {
+    /// Puts the couples that brake the bodies behind the other contacts.
+    pub(crate) fn couple(&mut self, members: &[usize]) {
+        self.contacts.truncate(self.targets.len());
+        self.contacts.extend(couples(&self.system, members, &self.pulled));
+    }
+
     /// Velocities of flights that also restore the gap, or make room for rotation; what kinetic energy that adds. None: there is nothing to
     /// restore, or no velocities are found that keep what room there is as long as the present ones do, which stay then.
     pub(crate) fn make_room(&mut self, inertia: &[(f64, DMat3)], gap: f64) -> Option<f64> {
@@ -182,6 +203,15 @@ impl Problem<'_> {
         self.contacts.iter().any(|contact| contact.row.is_some()) && most <= LIKE * least
     }
 
+    /// Do joints connect bodies of unlike masses?
+    fn hangs_by_light_bodies(&self) -> bool {
+        let rows = self.contacts.iter().filter(|contact| contact.row.is_some());
+        let ends = rows.flat_map(|contact| [contact.a, contact.b]).map(|body| &self.states[self.place(body)]);
+        let masses = ends.filter(|s| moves(s)).map(|s| s.mass);
+        let (least, most) = masses.fold((f64::INFINITY, 0.0f64), |(lo, hi), m| (lo.min(m), hi.max(m)));
+        most > LIKE * least
+    }
+
     /// Do the contacts last, with some of what is still to be added to restore the gap?
     fn lasts(&self, attempt: &Attempt) -> bool {
         attempt.lasts(self.options.gap, |k| attempt.restored(k))
@@ -248,7 +278,26 @@ impl Problem<'_> {
         self.members.binary_search(&body).unwrap_or_default()
     }
 
+    /// With brakes on what swings fast, unless these do work that counts.
     fn attempt(&self, now: f64, end: f64, room: Room) -> Attempt {
+        if self.hangs_by_light_bodies() {
+            let braked = self.attempt_with(now, end, room, Brakes::OfSwings);
+            if self.is_quietly_braked(&braked) {
+                return braked;
+            }
+        }
+        self.attempt_with(now, end, room, Brakes::None)
+    }
+
+    /// Do the brakes add no energy that counts? What forces have pulled taut for longer than a flight turns little, and gives back what the
+    /// brakes took; where something snaps taut they could add any.
+    fn is_quietly_braked(&self, attempt: &Attempt) -> bool {
+        let work = work(&attempt.system, &attempt.pulled);
+        let inertia: Vec<(f64, DMat3)> = self.states.iter().map(|s| world_inertia(s)).collect();
+        work <= WORK * attempt.system.doubled_energy(&inertia)
+    }
+
+    fn attempt_with(&self, now: f64, end: f64, room: Room, brakes: Brakes) -> Attempt {
         let (states, options) = (self.states, self.options);
         let place = |body: usize| self.place(body);
         let span =
@@ -268,15 +317,20 @@ impl Problem<'_> {
         let slow = span.resting_speed.max(options.gap / options.step);
         let accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM, slow, company: self.company };
         let mut pushing: Vec<f64> = rows.iter().map(|row| row.pushing).collect();
+        let spins: Vec<DVec3> = free.iter().map(|body| body.velocity.angular).collect();
         let mut system = System::new(free, &contacts, place).for_flights(&contacts, &targets, span.remaining);
         system.warm_start(&contacts);
         let (mut residual, mut off) = (0.0, 0.0);
+        let mut pulled = Vec::new();
         for correction in 0.. {
             let start = if correction == 0 { Start::Sticking } else { Start::Present };
             residual = system.solve(&pushing, accuracy, start);
             system.store(&mut contacts);
             let tolerance = system.tolerance(accuracy);
-            let is_off = put_right(&mut system, states, &contacts, span, place, tolerance);
+            if brakes == Brakes::OfSwings && correction < PULLS {
+                pulled = pulls(&pulled, states, &spins, &contacts, span.remaining, place);
+            }
+            let is_off = put_right(&mut system, states, &contacts, span, place, (&pulled, tolerance));
             let ends = Ends { joints: self.joints, states, span };
             let missed = ends.miss(&system, &contacts, place);
             off = missed.iter().map(|missed| missed.rate.abs()).fold(0.0, f64::max);
@@ -294,7 +348,20 @@ impl Problem<'_> {
             }
             system.renew();
         }
-        Attempt { span, end, contacts, targets, pushing, system, accuracy, residual, missed: off }
+        let mut attempt = Attempt {
+            span,
+            end,
+            contacts,
+            targets,
+            pushing,
+            system,
+            pulled,
+            accuracy,
+            residual,
+            missed: off,
+        };
+        attempt.couple(self.members);
+        attempt
     }
 }
 
@@ -309,6 +376,11 @@ pub(crate) fn body_at(state: &RigidBody, velocity: Velocity, inverse_inertia: DM
 /// A body that impulses do not move.
 pub(crate) fn still(state: &RigidBody) -> SolverBody {
     SolverBody { inverse_mass: 0.0, inverse_inertia: DMat3::ZERO, velocity: state.present_velocity() }
+}
+
+pub(crate) fn world_inertia(state: &RigidBody) -> (f64, DMat3) {
+    let r = DMat3::from_quat(state.orientation);
+    (state.mass, r * state.inertia * r.transpose())
 }
 
 /// Where the flights of jointed bodies end.
@@ -363,22 +435,23 @@ fn put_right(
     contacts: &[ContactPoint],
     span: Span,
     place: impl Fn(usize) -> usize,
-    tolerance: f64,
+    (pulled, tolerance): (&[Option<Pull>], f64),
 ) -> bool {
     let mut added = vec![Momenta::default(); states.len()];
     add(contacts, &mut added, place);
     let mut worst = 0.0f64;
-    for ((body, state), added) in system.bodies.iter_mut().zip(states).zip(&added) {
+    for (k, ((body, state), added)) in system.bodies.iter_mut().zip(states).zip(&added).enumerate() {
+        let pull = pulled.get(k).copied().flatten();
         if body.inverse_mass == 0.0 {
             continue;
         }
         let middle = state.angular_momentum
             + state.torque * state.lead.unwrap_or(0.5 * span.remaining)
             + added.angular;
-        let spin = state.midpoint_spin(middle, span.remaining);
+        let spin = state.midpoint_spin(middle, span.remaining, pull);
         worst = worst.max((spin - body.velocity.angular).length() * state.radius);
         body.velocity.angular = spin;
-        body.inverse_inertia = state.inverse_inertia_at(state.turned(spin, 0.5 * span.remaining));
+        body.inverse_inertia = state.inverse_inertia_under(state.turned(spin, 0.5 * span.remaining), pull);
     }
     worst > tolerance
 }

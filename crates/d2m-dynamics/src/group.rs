@@ -2,7 +2,7 @@
 
 use crate::SimulationOptions;
 use crate::account::{Entry, balance};
-use crate::attempt::{Clock, Problem, body_at, moves, still};
+use crate::attempt::{Clock, Problem, body_at, moves, still, world_inertia};
 use crate::contact::{Company, ContactPoint, HIT, Span, System, add, impact};
 use crate::joined::Joined;
 use crate::momenta::Momenta;
@@ -110,6 +110,7 @@ pub(crate) fn solve(
         let most: f64 = states.iter().filter(|s| moves(s)).map(held).sum();
         if gained.abs() > most {
             // Then it is made by impulses like others, and the account sees to their energy.
+            attempt.couple(&members);
             rests.fill(Momenta::default());
             add(&attempt.contacts, &mut rests, place);
             kept.clone_from(&attempt.contacts);
@@ -242,9 +243,4 @@ fn settle(
         push
     };
     outcomes.iter().zip(&entries).enumerate().map(push).collect()
-}
-
-fn world_inertia(state: &RigidBody) -> (f64, DMat3) {
-    let r = DMat3::from_quat(state.orientation);
-    (state.mass, r * state.inertia * r.transpose())
 }

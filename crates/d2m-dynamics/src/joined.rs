@@ -3,7 +3,8 @@
 use crate::SimulationError;
 use crate::contact::{ContactPoint, JointRow, Law, Material, tangents};
 use crate::joint::{Joint, JointKind, MotorTarget};
-use crate::rigid_body::{RigidBody, rotation_vector};
+use crate::rigid_body::RigidBody;
+use crate::turning::rotation_vector;
 use d2m_feature::FeaturePair;
 use glam::{BVec3, DQuat, DVec3};
 

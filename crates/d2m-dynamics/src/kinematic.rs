@@ -1,7 +1,8 @@
 //! Bodies that follow a motion, as flights of constant twists that stay close to it.
 
 use crate::body::Kind;
-use crate::rigid_body::{LARGEST, RigidBody, rotation_vector};
+use crate::rigid_body::{LARGEST, RigidBody};
+use crate::turning::rotation_vector;
 use crate::velocity::Velocity;
 use crate::{SimulationError, StepError};
 use d2m_interval::{Interval, IntervalVec3};

@@ -57,6 +57,7 @@ mod nested;
 mod options;
 mod pairs;
 mod parallel;
+mod pull;
 mod pushed;
 mod rebuilt;
 mod record;
@@ -67,6 +68,7 @@ mod snapshot;
 mod start;
 mod step;
 mod touches;
+mod turning;
 mod union;
 mod velocity;
 

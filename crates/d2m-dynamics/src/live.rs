@@ -2,7 +2,8 @@
 
 use crate::body::{Damping, Groups, Kind};
 use crate::contact::Material;
-use crate::rigid_body::{RigidBody, Target, rotation_vector};
+use crate::rigid_body::{RigidBody, Target};
+use crate::turning::rotation_vector;
 use crate::velocity::Velocity;
 use crate::{BodyId, Motion, Simulation, SimulationError};
 use d2m_motion::Pose;

@@ -4,6 +4,7 @@ use crate::body::{Body, BodyId, Damping, Groups, Kind, Mass, Presence};
 use crate::faces::Faces;
 use crate::hollow::cavity;
 use crate::momenta::Momenta;
+use crate::turning::{Pull, extreme_eigenvalues};
 use crate::velocity::Velocity;
 use crate::{MassProperties, SimulationError};
 use d2m_bvh::{MeshTree, Moving, Posed, QueryError, Solid};
@@ -410,16 +411,17 @@ impl RigidBody {
     pub(crate) fn flight_velocity(&self, length: f64, gravity: DVec3) -> Velocity {
         let lead = self.lead.unwrap_or(0.5 * length);
         let linear = (self.momentum + self.force_with(gravity) * lead) * self.inverse_mass;
-        let angular = self.midpoint_spin(self.angular_momentum + self.torque * lead, length);
+        let angular = self.midpoint_spin(self.angular_momentum + self.torque * lead, length, None);
         Velocity { linear, angular }
     }
 
     /// The angular velocity ω with ω = R I⁻¹ Rᵀ L at R = exp([ω] h/2) R₀: a flight of length h with it has the angular momentum
-    /// L in its middle, and so have all the flights of a body that nothing meets.
-    pub(crate) fn midpoint_spin(&self, angular_momentum: DVec3, h: f64) -> DVec3 {
-        let mut omega = self.inverse_inertia_at(self.orientation) * angular_momentum;
+    /// L in its middle, and so have all the flights of a body that nothing meets. Under a pull it is the ω with (R I Rᵀ + G) ω = L + G ω₀.
+    pub(crate) fn midpoint_spin(&self, angular_momentum: DVec3, h: f64, pull: Option<Pull>) -> DVec3 {
+        let sum = angular_momentum + pull.map_or(DVec3::ZERO, |pull| pull.stiffness * pull.free);
+        let mut omega = self.inverse_inertia_under(self.orientation, pull) * sum;
         for _ in 0..64 {
-            let next = self.inverse_inertia_at(self.turned(omega, 0.5 * h)) * angular_momentum;
+            let next = self.inverse_inertia_under(self.turned(omega, 0.5 * h), pull) * sum;
             let change = (next - omega).abs().max_element();
             omega = next;
             if change <= 2.0 * f64::EPSILON * omega.abs().max_element() {
@@ -438,6 +440,13 @@ impl RigidBody {
     pub(crate) fn inverse_inertia_at(&self, orientation: DQuat) -> DMat3 {
         let r = DMat3::from_quat(orientation);
         r * self.inverse_inertia * r.transpose()
+    }
+
+    /// Against what changes its spin, with what a pull adds to it.
+    pub(crate) fn inverse_inertia_under(&self, orientation: DQuat, pull: Option<Pull>) -> DMat3 {
+        let Some(pull) = pull else { return self.inverse_inertia_at(orientation) };
+        let r = DMat3::from_quat(orientation);
+        (r * self.inertia * r.transpose() + pull.stiffness).inverse()
     }
 
     /// How long the next flight may be at most: the step, or what a body that tumbles takes for a small turn. It depends on the energy
@@ -550,24 +559,6 @@ pub(crate) fn rest(center: DVec3, position: DVec3, orientation: DQuat, time: f64
 /// Parts of a flight that are left over from the division of a step.
 const ROUND: f64 = 1e-6;
 
-/// The least and the greatest eigenvalue of a symmetric matrix, by the roots of its characteristic polynomial (Smith 1961).
-fn extreme_eigenvalues(m: DMat3) -> [f64; 2] {
-    let mean = (m.x_axis.x + m.y_axis.y + m.z_axis.z) / 3.0;
-    let rest = m - DMat3::from_diagonal(DVec3::splat(mean));
-    let square: f64 = rest.to_cols_array().iter().map(|x| x * x).sum();
-    let size = (square / 6.0).sqrt();
-    // Rounding of the elements of a sphere's.
-    if size.is_nan() || size <= 1e-12 * mean {
-        return [mean, mean];
-    }
-    let half = (0.5 * (rest * (1.0 / size)).determinant()).clamp(-1.0, 1.0);
-    let third = Interval::point((1.0 - half * half).max(0.0).sqrt()).atan2(Interval::point(half)).mid() / 3.0;
-    let cos = |x: f64| Interval::point(x).cos().mid();
-    let most = mean + 2.0 * size * cos(third);
-    let least = mean + 2.0 * size * cos(third + 2.0 * core::f64::consts::FRAC_PI_3);
-    [least.max(0.0), most]
-}
-
 /// Of a mesh without mass: the center of its volume if it is closed, of its bounding box otherwise.
 fn middle(tree: &MeshTree) -> DVec3 {
     if tree.is_watertight() {
@@ -577,16 +568,4 @@ fn middle(tree: &MeshTree) -> DVec3 {
         }
     }
     DVec3::ZERO
-}
-
-/// Axis times angle in [0, π] of a rotation, world axes; the same bits on every platform.
-pub(crate) fn rotation_vector(q: DQuat) -> DVec3 {
-    let q = if q.w < 0.0 { -q } else { q };
-    let axis = DVec3::new(q.x, q.y, q.z);
-    let sine = axis.length();
-    if sine == 0.0 {
-        return DVec3::ZERO;
-    }
-    let half = Interval::point(sine).atan2(Interval::point(q.w)).mid();
-    axis * (2.0 * half / sine)
 }

@@ -2,10 +2,10 @@
 
 use d2m_bvh::MeshTree;
 use d2m_dynamics::{
-    Body, BodyId, Joint, JointKind, Motor, MotorTarget, Simulation, SimulationError, SimulationOptions,
+    Body, BodyId, Joint, JointKind, Mass, Motor, MotorTarget, Simulation, SimulationError, SimulationOptions,
     Spring,
 };
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
 /// A bar of ten kilograms and a length of one, along x about this point.
@@ -224,4 +224,72 @@ fn the_end_of_a_long_chain_whips_round_without_gaining_energy() {
         assert!(apart < 1e-3, "{apart} at {}", simulation.time());
     }
     assert!(most < 6.0, "{most}");
+}
+
+/// A box on a rope of ten rods of 100 grams, which ends at these points.
+fn rope(load: f64, points: &[DVec3]) -> Simulation {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let shape = |query: &str| Arc::new(MeshTree::new(d2m_shapes::mesh(query).unwrap()));
+    let (rod, cube) = (shape("box?x=0.05&y=0.01&z=0.01"), shape("box?x=0.15&y=0.15&z=0.15"));
+    let mut last = None;
+    for (k, &point) in points.iter().enumerate() {
+        let way = points.get(k + 1).map_or(DVec3::X * 0.3, |next| next - point);
+        let (tree, mass) = if k + 1 < points.len() { (&rod, 0.1) } else { (&cube, load) };
+        let body = Body::new(format!("{k}"), Arc::clone(tree)).with_mass(Mass::Total(mass));
+        let turn = DQuat::from_rotation_arc(DVec3::X, way.normalize());
+        let body = simulation.add(&body.with_position(point + way * 0.5).with_orientation(turn)).unwrap();
+        let joint = match last {
+            Some(before) => Joint::new(JointKind::Spherical, before, Some(body), point),
+            None => Joint::new(JointKind::Spherical, body, None, point),
+        };
+        simulation.add_joint(&joint).unwrap();
+        last = Some(body);
+    }
+    let ids: Vec<BodyId> = simulation.ids().collect();
+    for (k, &a) in ids.iter().enumerate() {
+        ids[k + 1..].iter().for_each(|&b| simulation.ignore(a, b));
+    }
+    simulation
+}
+
+/// Rods of 100 grams carry a box of a tonne, and of a thousand, which swings from level: pulled so hard they turn a hundred times faster than
+/// steps are long. Without brakes a tonne takes twelve times the flights, and a thousand of them gain any energy.
+#[test]
+fn a_light_rope_carries_a_heavy_load() {
+    for load in [1e3, 1e6] {
+        let points: Vec<DVec3> = (0..=10).map(|k| DVec3::X * (0.1 * f64::from(k))).collect();
+        let mut simulation = rope(load, &points);
+        let ids: Vec<BodyId> = simulation.ids().collect();
+        let (mut flights, first) = (0, energy(&simulation));
+        while simulation.time() < 0.5 - 1e-9 {
+            let report = simulation.step().unwrap();
+            flights += report.segments.len();
+            assert!(report.segments.iter().all(|segment| segment.skipped == 0.0));
+            assert!(flights <= 200, "{flights} until {}", simulation.time());
+        }
+        let fallen = -simulation.position(ids[10]).y;
+        assert!(fallen > 0.9, "{fallen}");
+        let gained = (energy(&simulation) - first) / (load * 9.81 * fallen);
+        assert!(gained.abs() < 1e-2, "{gained}");
+        for (k, pair) in ids.windows(2).enumerate() {
+            let half = if k < 9 { 0.05 } else { 0.15 };
+            let apart = end(&simulation, pair[0], 0.05) - end(&simulation, pair[1], -half);
+            assert!(apart.length() < 1e-6, "{k}: {apart}");
+        }
+    }
+}
+
+/// A tonne falls on a slack rope of light rods, which snaps taut: brakes that gave back what they never took would throw it up again.
+#[test]
+fn a_rope_that_snaps_taut_gains_no_energy() {
+    let zigzag = |k: i32| DVec3::new(0.08 * f64::from(k % 2), -0.06 * f64::from(k), 0.0);
+    let points: Vec<DVec3> = (0..=10).map(zigzag).collect();
+    let mut simulation = rope(1e3, &points);
+    let first = energy(&simulation);
+    let mut most = f64::NEG_INFINITY;
+    while simulation.time() < 0.6 {
+        simulation.step().unwrap();
+        most = most.max((energy(&simulation) - first) / (1e3 * 9.81 * 0.4));
+    }
+    assert!(most < 0.1, "{most}");
 }

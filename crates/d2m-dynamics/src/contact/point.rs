@@ -93,6 +93,35 @@ impl ContactPoint {
         self.distance - SHARED * self.distance.min(self.gap)
     }
 
+    /// An angular impulse on a body: two impulses at arms that are one apart. None: it is zero.
+    pub(crate) fn couple(body: usize, angular: DVec3) -> Option<Self> {
+        let impulse = angular.length();
+        if !(impulse > 0.0 && impulse.is_finite()) {
+            return None;
+        }
+        let [normal, arm] = tangents(angular / impulse);
+        let (lo, hi) = (f64::NEG_INFINITY, f64::INFINITY);
+        let law = Law::Range { lo, hi, softness: 0.0 };
+        Some(Self {
+            a: body,
+            b: body,
+            feature: FeaturePair::VertexFace { vertex: 0, face: 0 },
+            normal,
+            tangents: tangents(normal),
+            distance: 0.0,
+            is_expected: false,
+            gap: 0.0,
+            arm_a: arm * 0.5,
+            arm_b: arm * -0.5,
+            point: DVec3::ZERO,
+            material: Material { restitution: 0.0, friction: 0.0 },
+            running: [0.0; 2],
+            row: Some(JointRow { is_angular: false, law, pushing: 0.0, target: 0.0, equation: None }),
+            impulse,
+            sliding: [0.0; 2],
+        })
+    }
+
     /// The same contact of bodies that slip, without an impulse.
     pub(crate) fn without_friction(&self) -> Self {
         let material = Material { friction: 0.0, ..self.material };
