@@ -2,7 +2,8 @@
 
 use crate::RobotError;
 use crate::body_box::BodyBox;
-use crate::scene::{MovingPair, Owner, RobotScene};
+use crate::part::{MovingPair, Owner};
+use crate::scene::RobotScene;
 use crate::swept_box::{Sweep, SweptBox};
 use d2m_bvh::Window;
 use d2m_motion::{Arm, ArmSpan, CoveredMotion};

@@ -3,7 +3,8 @@
 use crate::answer::{PathAnswer, PathContact};
 use crate::broad_phase::BroadPhase;
 use crate::limits::LimitWarning;
-use crate::scene::{Owner, RobotScene};
+use crate::part::Owner;
+use crate::scene::RobotScene;
 use crate::{RobotError, Trajectory};
 use d2m_bvh::Window;
 use d2m_motion::{Arm, JointPoints, JointValue};

@@ -47,6 +47,7 @@ mod link_tree;
 mod obstacle;
 mod options;
 mod packages;
+mod part;
 mod path_bodies;
 mod robot;
 mod scene;

@@ -3,11 +3,12 @@
 use crate::body_box::BodyBox;
 use crate::geometry::LinkBody;
 use crate::obstacle::{Attached, Obstacle};
+use crate::part::{MovingPair, Owner, Part};
 use crate::robot::Robot;
 use crate::{RobotError, Srdf};
 use d2m_bvh::{Budget, MeshTree, QueryOptions, Solid, Start, Window, time_of_contact};
-use d2m_motion::{CertifiedState, Chain, ConstantTwist, Joint, JointKind, RigidMotion};
-use d2m_world::{Body, BodyId, World};
+use d2m_motion::JointKind;
+use d2m_world::{Body, World};
 use std::sync::Arc;
 
 /// A robot, obstacles and attached bodies: what paths are checked in.
@@ -46,50 +47,6 @@ pub struct RobotScene {
     pub(crate) pairs: Arc<Vec<[usize; 2]>>,
     /// Those of them that are searched: not the ones that never move against each other and are proven apart.
     pub(crate) moving_pairs: Arc<Vec<MovingPair>>,
-}
-
-/// A pair that is checked and may move.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct MovingPair {
-    /// Places of its parts.
-    pub(crate) parts: [usize; 2],
-    /// At which it counts as in contact; radii of both are part of it.
-    pub(crate) separation: f64,
-    /// The link of the arm that both are seen from: the last that carries both. None: the world.
-    pub(crate) seen_from: Option<usize>,
-}
-
-/// A body of the world.
-#[derive(Clone)]
-pub(crate) struct Part {
-    pub(crate) id: BodyId,
-    pub(crate) name: String,
-    pub(crate) owner: Owner,
-    /// The body is everything within this distance of its mesh.
-    pub(crate) radius: f64,
-    /// Of the mesh: in the frame of the link that carries it, or of the world where it is at rest; else its own.
-    pub(crate) body_box: BodyBox,
-}
-
-/// What a body belongs to.
-#[derive(Clone)]
-pub(crate) enum Owner {
-    /// A collision body of a link, in this frame of it.
-    Link { link: usize, frame: Option<Joint> },
-    /// Carried by a link, in this frame of it.
-    Attached { link: usize, frame: Joint },
-    /// Not the robot's.
-    Obstacle { is_at_rest: bool },
-}
-
-impl Part {
-    /// The link that carries it.
-    pub(crate) fn carrier(&self) -> Option<usize> {
-        match self.owner {
-            Owner::Link { link, .. } | Owner::Attached { link, .. } => Some(link),
-            Owner::Obstacle { .. } => None,
-        }
-    }
 }
 
 impl RobotScene {
@@ -281,7 +238,7 @@ impl RobotScene {
         body: Body,
         is_checked: impl Fn(&Part) -> bool,
     ) -> Result<(), RobotError> {
-        let body_box = BodyBox::around(body.tree().mesh().vertices(), &place_of(&owner, &body)?);
+        let body_box = BodyBox::around(body.tree().mesh().vertices(), &owner.place_of(&body)?);
         let radius = body.radius();
         let id = self.world.add(body);
         let place = id.index();
@@ -465,19 +422,6 @@ impl RobotScene {
             format!("{} has this name already", if is_link { "a link of the robot" } else { "another body" });
         Err(RobotError::Body { name: name.to_owned(), reason })
     }
-}
-
-/// How a mesh stands in the frame of what carries it.
-fn place_of(owner: &Owner, body: &Body) -> Result<CertifiedState, RobotError> {
-    Ok(match owner {
-        Owner::Link { frame: Some(frame), .. } | Owner::Attached { frame, .. } => {
-            Chain::try_new(vec![frame.clone()])?.enclose_state(0.0)
-        }
-        Owner::Obstacle { is_at_rest: true } => body.motion().enclose_state(0.0),
-        Owner::Link { frame: None, .. } | Owner::Obstacle { is_at_rest: false } => {
-            ConstantTwist::REST.enclose_state(0.0)
-        }
-    })
 }
 
 /// A mesh that bounds a solid is one.

@@ -18,6 +18,11 @@
 //! | several threads | 1024 node tests | each round 4096 tests a thread | `parallel` |
 //! | all but the first five, when the level is grazed | 64 times later | – | [`patience`] |
 //!
+//! What one mechanism does within itself stands with it: which directions a test tries ([`separating_axis`]), which planes part crowds (`crowd`), how
+//! long spans of any motion are (`general_motion/span_length`), of contact (`staying_walk`), and where clearances are sampled (`clearance`). Tests
+//! are counted for the whole search, so that pairs of a search that has become hard need not each find that out anew; threads that search
+//! ahead therefore have to check that the true counts would have changed nothing (`parallel`).
+//!
 //! [`separating_axis`]: crate::pair::triangles::separating_axis
 
 use crate::pair::triangles::separating_axis::BoundOrder;
