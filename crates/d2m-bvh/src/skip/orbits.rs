@@ -26,6 +26,19 @@ const MIX: u64 = 0x9e37_79b9_7f4a_7c15;
 const FIRST_LEAD: f64 = 0.123_456;
 const FIRST_STEP: f64 = 0.387_654;
 
+/// The vertices of a body, seen from the axis.
+pub(super) struct PlacedVertices {
+    pub(super) places: Vec<DVec3>,
+    /// Their angles, where they were needed.
+    angles: Vec<Option<f64>>,
+}
+
+impl PlacedVertices {
+    pub(super) fn new(places: Vec<DVec3>) -> Self {
+        Self { angles: vec![None; places.len()], places }
+    }
+}
+
 /// The projections of a body: of the triangles whose angles are known, and of the others.
 pub(super) struct BodyProjections {
     pub(super) with_angles: ProjectionTree,
@@ -33,16 +46,15 @@ pub(super) struct BodyProjections {
 }
 
 impl BodyProjections {
-    /// Of triangles, given by the numbers of their vertices. `places`: the vertices, seen from the axis. Only those that the triangles have
-    /// get angles.
+    /// Of triangles, given by the numbers of their vertices.
     pub(super) fn try_new(
         screw: &Screw,
-        places: &[DVec3],
+        vertices: &mut PlacedVertices,
         triangles: &[[u32; 3]],
         clock: &mut Meter,
     ) -> Result<Self, Exhausted> {
+        let PlacedVertices { places, angles } = vertices;
         let farthest = places.iter().map(|p| p.truncate().length_squared()).fold(0.0, f64::max).sqrt();
-        let mut angles = vec![None; places.len()];
         let mut angle_of = |v: u32| {
             let at = places[v as usize];
             *angles[v as usize].get_or_insert_with(|| angle(at.y, at.x))

@@ -6,7 +6,7 @@
 //!
 //! See docs/theory/engine.md, "Screws".
 
-use super::orbits::BodyProjections;
+use super::orbits::{BodyProjections, PlacedVertices};
 use super::projection::{DIRECTIONS, Directions, Piece, Range};
 use super::projection_tree::ProjectionTree;
 use super::screw::Screw;
@@ -66,8 +66,7 @@ fn triangle_count(scene: &MovingScene<'_>) -> usize {
 
 /// A body as it is seen from the axis at the start.
 struct Seen {
-    /// Its vertices.
-    places: Vec<DVec3>,
+    vertices: PlacedVertices,
     /// Where each triangle lies.
     annuli: Vec<AnnularBound>,
 }
@@ -85,7 +84,7 @@ impl Seen {
             Ok(AnnularBound::of(&triangle.map(|v| places[v as usize]), true))
         };
         let annuli = mesh.triangles().iter().map(annulus).collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { places, annuli })
+        Ok(Self { vertices: PlacedVertices::new(places), annuli })
     }
 }
 
@@ -119,7 +118,8 @@ fn clear_along(
     let places = screw.places(scene, start);
     let probe = [0, 1].map(|body| {
         let corners = bodies[body].corners(limits.witnesses[body]).map(&places[body]);
-        BodyProjections::try_new(screw, &corners, &[[0, 1, 2]], &mut walk.clock)
+        let mut vertices = PlacedVertices::new(corners.to_vec());
+        BodyProjections::try_new(screw, &mut vertices, &[[0, 1, 2]], &mut walk.clock)
     });
     let [Ok(a), Ok(b)] = probe else { return Skip { clear_until: None, work: 0 } };
     if !walk.compare([a, b]) {
@@ -140,7 +140,7 @@ fn clear_along(
     let whole = [0, 1].map(|body| {
         let all = bodies[body].tree.mesh().triangles();
         let triangles: Vec<[u32; 3]> = near[body].iter().map(|&t| all[t]).collect();
-        BodyProjections::try_new(screw, &seen[body].places, &triangles, &mut walk.clock)
+        BodyProjections::try_new(screw, &mut seen[body].vertices, &triangles, &mut walk.clock)
     });
     let [Ok(a), Ok(b)] = whole else { return Skip { clear_until: None, work: projected } };
     let apart = walk.compare([a, b]);
@@ -394,7 +394,10 @@ mod tests {
         let turn = DQuat::from_rotation_z(1.0);
         let plate =
             [DVec3::new(-2.0, -2.0, 1.02e-7), DVec3::new(2.0, -2.0, 1.02e-7), DVec3::new(0.0, 3.0, 1.02e-7)];
-        let plate = MeshTree::new(TriMesh::try_new(plate.into(), vec![[0, 1, 2]]).unwrap());
+        // With a face below both, beside the path of either, so that neither is left out.
+        let post = [(0.82, -0.09), (0.82, -0.08), (0.83, -0.085)].map(|(x, z)| DVec3::new(x, 0.0, z));
+        let plate = TriMesh::try_new([plate, post].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+        let plate = MeshTree::new(plate);
         let options = QueryOptions::default().with_tolerance(1e-7);
         let spin = ConstantTwist::REST.with_angular_velocity(DVec3::Z * 5.0);
         let until = |lift: f64| {
@@ -494,6 +497,22 @@ mod tests {
         assert_eq!((until(0.0), until(1e-9), until(-5e-7)), (Some(1.0), Some(1.0), None));
     }
 
+    /// Of two faces that climb towards a plate, the one that is tested last gets nowhere near it, the other one there at three quarters of
+    /// the time.
+    #[test]
+    fn what_comes_near_late_is_projected() {
+        let face = |z: f64| [(0.5, 0.0), (1.0, 0.2), (1.0, -0.2)].map(|(x, y)| DVec3::new(x, y, z));
+        let faces = TriMesh::try_new([face(-5.0), face(-0.75)].concat(), vec![[0, 1, 2], [3, 4, 5]]);
+        let plate = [(-9.0, -9.0), (9.0, -9.0), (0.0, 9.0)].map(|(x, y)| DVec3::new(x, y, 0.0));
+        let plate = TriMesh::try_new(plate.to_vec(), vec![[0, 1, 2]]);
+        let [faces, plate] = [faces, plate].map(|mesh| MeshTree::new(mesh.unwrap()));
+        let climb = ConstantTwist::REST.with_linear_velocity(DVec3::Z).with_angular_velocity(DVec3::Z * 6.0);
+        let options = QueryOptions::default().with_tolerance(1e-7);
+        let scene = MovingScene::new((&faces, climb), (&plate, ConstantTwist::REST), Window::UNIT, &options);
+        let until = screw_clear_until(&scene, 0.0, &LIMITS).clear_until;
+        assert!(until.is_some_and(|until| (0.74..=0.75).contains(&until)), "{until:?}");
+    }
+
     /// A ring that turns about a post, and is wide: only its inner rim is near the post, and only that is projected.
     #[test]
     fn what_is_never_near_is_not_projected() {
@@ -557,8 +576,9 @@ mod tests {
             assert_eq!(skip.clear_until.is_none(), ends, "{skip:?}");
             let screw = Screw::new(&scene, 0.0).unwrap();
             let mut clock = Meter::until(stop);
-            let (places, triangles) = (a.mesh().vertices(), a.mesh().triangles());
-            let projected = BodyProjections::try_new(&screw, places, triangles, &mut clock);
+            let (places, triangles) = (a.mesh().vertices().to_vec(), a.mesh().triangles());
+            let mut vertices = PlacedVertices::new(places);
+            let projected = BodyProjections::try_new(&screw, &mut vertices, triangles, &mut clock);
             assert_eq!(projected.is_err(), ends);
         }
     }

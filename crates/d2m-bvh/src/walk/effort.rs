@@ -11,7 +11,7 @@
 //! | directions that turn with the bodies | after 1024 tests of the search, or 24 of the pair | – | `triangle_pair/turning` |
 //! | a pair followed at once | when it is handed out | its time grew by 1/16, or 64 steps when out of turn | `pairs` |
 //! | a fresh frame | the time grew by 1/128, or by 1/16 when the level is grazed | – | `best_first` |
-//! | swept volumes, then screws | work of 256 and 1/8 test a triangle; 256 and one a triangle when 1/16 of the sub-window is done | after a success at a quarter more, else at four times the work | `skip` |
+//! | swept volumes, then screws | work of 256 and 1/8 test a triangle; 256 and one a triangle when 1/16 of the sub-window is done | after a success at a quarter more, else at eight times the work | `skip` |
 //! | pairs of parts along a screw | – | a quarter of the work, and three for each triangle that may be near the other body | `skip` |
 //! | planes between crowds | 4096 pairs wait, or 1024 batches | twice as many, and as much other work as it took | `crowd` |
 //! | spans of time, divided | 64 sub-windows | 256 pairs in a span | `time_split` |
@@ -135,7 +135,7 @@ pub(crate) const fn most_screw_pairs(work: u64) -> u64 {
 
 /// The work at which swept volumes are compared again, after a comparison that was due at `due` and ended at `work`.
 pub(crate) const fn next_sweep(work: u64, due: u64, gained: bool) -> u64 {
-    if gained { work + due / 4 } else { 4 * work }
+    if gained { work + due / 4 } else { 8 * work }
 }
 
 /// As many pairs that wait are a crowd, and as many batches in one window make one: several times as many as in
