@@ -246,10 +246,10 @@ impl Problem<'_> {
         };
         if friction == Friction::GivesWay {
             // With friction, as long as that has flights no shorter than without.
-            return ends.iter().find_map(|&until| shared(self, until).or_else(|| shared(&smooth, until)));
+            return longest(&ends, |until| shared(self, until).or_else(|| shared(&smooth, until)));
         }
-        let longest = |problem: &Problem<'_>| ends.iter().find_map(|&until| shared(problem, until));
-        longest(self).or_else(|| if is_possible { None } else { longest(&smooth) })
+        let of = |problem: &Problem<'_>| longest(&ends, |until| shared(problem, until));
+        of(self).or_else(|| if is_possible { None } else { of(&smooth) })
     }
 
     /// A gap in a step.
@@ -365,6 +365,19 @@ impl Problem<'_> {
     }
 }
 
+/// What is found for the latest of these times, descending, by bisection: the shorter flights are, the more may close in.
+fn longest<T>(ends: &[f64], found: impl Fn(f64) -> Option<T>) -> Option<T> {
+    let (mut from, mut to, mut best) = (0, ends.len(), None);
+    while from < to {
+        let middle = from + (to - from) / 2;
+        match found(ends[middle]) {
+            Some(answer) => (to, best) = (middle, Some(answer)),
+            None => from = middle + 1,
+        }
+    }
+    best
+}
+
 pub(crate) fn moves(state: &RigidBody) -> bool {
     state.is_dynamic() && !state.held
 }
@@ -454,4 +467,25 @@ fn put_right(
         body.inverse_inertia = state.inverse_inertia_under(state.turned(spin, 0.5 * span.remaining), pull);
     }
     worst > tolerance
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::cell::Cell;
+
+    /// Of seven lengths three are tried.
+    #[test]
+    fn the_longest_flights_are_found_by_bisection() {
+        let ends: Vec<f64> = (1..=7).rev().map(f64::from).collect();
+        for most in 0..=7 {
+            let tried = Cell::new(0);
+            let found = longest(&ends, |end| {
+                tried.set(tried.get() + 1);
+                Some(end).filter(|&end| end <= f64::from(most))
+            });
+            assert_eq!(found, (most > 0).then_some(f64::from(most)));
+            assert_eq!(tried.get(), 3);
+        }
+    }
 }

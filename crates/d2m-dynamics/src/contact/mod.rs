@@ -22,6 +22,8 @@ pub(crate) use infeasible::Squeeze;
 pub(crate) use law::Law;
 pub(crate) use newton::Start;
 pub use point::Material;
+#[cfg(test)]
+pub(crate) use point::upright;
 pub(crate) use point::{ContactPoint, JointRow, add, tangents};
 pub(crate) use rows::{HIT, NEAR, Room, Span, select};
 pub(crate) use solver_body::SolverBody;

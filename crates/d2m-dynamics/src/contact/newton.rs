@@ -27,18 +27,14 @@ pub(super) struct Effort {
     rounds: u32,
     /// Newton steps of one round at most.
     steps: u32,
-    /// The softness of rows at first, of their scale.
-    soft: f64,
 }
 
 impl Effort {
     /// As exact as it gets.
-    pub(super) const FULL: Self = Self { rounds: 10, steps: 80, soft: 1e-3 };
-    /// And with rows so hard at first that what can stick does: on soft rows it creeps, which counts as sliding in the next round.
-    pub(super) const STICK: Self = Self { soft: 1e-5, ..Self::FULL };
+    pub(super) const FULL: Self = Self { rounds: 20, steps: 80 };
     /// After sweeps that left too much: with soft rows three or four steps find a round's velocities also where much slides, and
     /// the first rounds gain most.
-    pub(super) const SHORT: Self = Self { rounds: 4, steps: 8, soft: 1e-2 };
+    pub(super) const SHORT: Self = Self { rounds: 4, steps: 8 };
 
     fn is_short(self) -> bool {
         self.rounds < Self::FULL.rounds
@@ -51,13 +47,17 @@ const SHARE: f64 = 1e-2;
 /// And at least, as a part of that, and in any case.
 const HARDEST: f64 = 1e-4;
 const LEAST_SOFT: f64 = 1e-11;
-/// It is made smaller by this where a round gains less than [`GAIN`], and greater by this where its velocities are not found: many contacts
-/// that slide ask for that, and harder rows only more so.
+/// It is made smaller by this where most of what a round leaves is what its rows yield, and greater by this where its velocities are not found:
+/// many contacts that slide ask for that, and harder rows only more so.
 const HARDER: f64 = 0.05;
 const SOFTER: f64 = 100.0;
-const GAIN: f64 = 5.0;
-/// But no greater than this.
+/// The part of what a round leaves up to which it is not its rows that yield but shifts that are others: these converge no sooner on harder
+/// rows, on which Newton's method takes the more steps the harder they are.
+const YIELDED: f64 = 0.5;
+/// But no greater than this, with which a solution begins.
 const MOST_SOFT: f64 = 1e-2;
+/// And with this where there are joints: what their rows yield adds up from step to step.
+const JOINED: f64 = 1e-5;
 /// Rounds one after the other that gain nothing, after which no other one is tried.
 const MOST_LOSSES: u32 = 3;
 /// Of a crowd, a round that leaves more than this of the one before is the last one.
@@ -120,7 +120,8 @@ impl System {
         };
         let mut state = (self.impulses.clone(), shift, self.velocities());
         let mut anderson = Anderson::default();
-        let mut soft = (SHARE / self.mass_ratio()).clamp(LEAST_SOFT, effort.soft);
+        let most_soft = if self.has_joints { JOINED } else { MOST_SOFT };
+        let mut soft = (SHARE / self.mass_ratio()).clamp(LEAST_SOFT, most_soft);
         let hardest = (HARDEST * SHARE / self.mass_ratio()).max(LEAST_SOFT);
         let (mut last, mut losses) = (f64::INFINITY, 0);
         for _ in 0..effort.rounds {
@@ -154,15 +155,22 @@ impl System {
             if residual <= aim || stops {
                 break;
             }
-            let answer: Vec<f64> = self.blocks.iter().map(|block| slides(block, self)).collect();
-            let shift = anderson.next(&shift, answer);
+            last = residual;
+            let yielded = |of: &Self| {
+                let own = |k: usize| of.natural_map(k, targets[k], shift[k]);
+                (0..targets.len()).map(own).fold(0.0, f64::max)
+            };
+            // What yields creeps, which is no sliding: the shifts stay as they are until it does so no more.
+            if is_found && !effort.is_short() && yielded(self) > YIELDED * residual {
+                soft = (HARDER * soft).max(hardest);
+                state = (impulses, shift, velocity);
+                continue;
+            }
             if !is_found {
                 soft = (SOFTER * soft).min(MOST_SOFT);
-            } else if GAIN * residual > last && !effort.is_short() {
-                soft = (HARDER * soft).max(hardest);
             }
-            last = residual;
-            state = (impulses, shift, velocity);
+            let answer: Vec<f64> = self.blocks.iter().map(|block| slides(block, self)).collect();
+            state = (impulses, anderson.next(&shift, answer), velocity);
         }
         // What slips at the start may obey the law, too: it counts only where nothing else does.
         let best = best.filter(|best| best.0 <= tolerance.max(begun.0)).unwrap_or(begun);
@@ -496,8 +504,20 @@ fn square_of([nn, nt, nu, tt, tu, uu]: Slope) -> [[f64; 3]; 3] {
 mod tests {
     use super::super::ContactPoint;
     use super::super::point::{Material, upright};
+    use super::super::sweeps::tests::column;
     use super::*;
     use crate::contact::Company;
+
+    /// In one round soft rows of a column yield by far more than that under all that lies on them.
+    #[test]
+    fn rows_get_harder_under_tall_columns() {
+        let (count, speed) = (100, 0.01);
+        let mut system = column(count, speed);
+        let accuracy =
+            Accuracy { precision: 1e-9, relative: 0.0, aim: 1.0, company: Company::Few, slow: 1.0 };
+        let residual = system.solve_direct(&vec![0.0; count], accuracy, Start::Sticking, Effort::FULL);
+        assert!(residual < 1e-9, "{residual}");
+    }
 
     /// What slides does not lift: without the shift by what it slides it would, as fast as friction times that.
     #[test]
@@ -513,7 +533,7 @@ mod tests {
         let mut system = System::new(bodies, &[contact], |i| i);
         let accuracy =
             Accuracy { precision: 1e-9, relative: 0.0, aim: 1.0, company: Company::Few, slow: 1.0 };
-        let residual = system.solve_direct(&[0.0], accuracy, Start::Sticking, Effort::STICK);
+        let residual = system.solve_direct(&[0.0], accuracy, Start::Sticking, Effort::FULL);
         assert!(residual < 1e-9, "{residual}");
         let off = system.bodies[1].velocity.linear - DVec3::X * 2.7;
         assert!(off.length() < 1e-8, "{off}");

@@ -171,7 +171,7 @@ pub(crate) fn tangents(normal: DVec3) -> [DVec3; 2] {
 
 /// A contact without friction of two bodies whose centers are one apart along y.
 #[cfg(test)]
-pub(super) fn upright([a, b]: [usize; 2]) -> ContactPoint {
+pub(crate) fn upright([a, b]: [usize; 2]) -> ContactPoint {
     let normal = DVec3::Y;
     ContactPoint {
         a,

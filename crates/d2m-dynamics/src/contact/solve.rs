@@ -50,7 +50,7 @@ impl System {
             return residual;
         }
         let (moved, mut residual) = (self.moved(), self.residual(targets));
-        let (mut start, mut effort) = (start, Effort::STICK);
+        let mut start = start;
         if self.mass_ratio() <= MOST_RATIO && !self.has_joints {
             if self.is_crowd() {
                 residual = self.sweep_until(targets, accuracy, Pace::Conjugate, FIRST);
@@ -79,12 +79,12 @@ impl System {
                 if is_swept && residual <= self.enough(accuracy) {
                     return residual;
                 }
-                (start, effort) = (Start::Present, Effort::FULL);
+                start = Start::Present;
             }
         }
         // What slips may obey the law as well as what sticks.
         let tolerance = self.tolerance(accuracy);
-        let full = |system: &mut Self| system.solve_direct(targets, accuracy, start, effort);
+        let full = |system: &mut Self| system.solve_direct(targets, accuracy, start, Effort::FULL);
         residual = self.better(residual, tolerance, full);
         if residual <= self.tolerance(accuracy).max(self.enough(accuracy)) {
             return residual;
@@ -128,10 +128,10 @@ impl System {
     }
 
     /// Does something slide so slowly that it might as well stick, where bodies are jammed? What follows a motion may take along what it
-    /// does not press on yet, and faster.
+    /// does not press on yet, and faster; of a crowd sweeps find what holds, and where it jams there is nothing to be found.
     fn could_stick(&self, accuracy: Accuracy) -> bool {
         let is_driven = |body: &SolverBody| body.inverse_mass == 0.0 && body.velocity != Velocity::default();
-        let drives = self.moved() <= FEW && self.bodies.iter().any(is_driven);
+        let drives = !accuracy.in_crowd() && self.moved() <= FEW && self.bodies.iter().any(is_driven);
         let is_whole = accuracy.company != Company::Heap;
         let is_slow = is_whole && self.moved() <= SOME && self.mean_speed() <= accuracy.slow;
         let is_couple = self.moved() <= COUPLE && !accuracy.in_crowd();
@@ -209,5 +209,31 @@ impl System {
         let (least, most) =
             inverses.fold((f64::INFINITY, 0.0f64), |(least, most), x| (least.min(x), most.max(x)));
         if most > 0.0 { most / least } else { 1.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::ContactPoint;
+    use crate::contact::point::{Material, upright};
+    use glam::DMat3;
+
+    /// What lies between two bodies of which one follows a motion may be taken along, by a few bodies; of a crowd sweeps come first.
+    #[test]
+    fn crowds_are_swept_before_anything_sticks() {
+        let body = |inverse_mass: f64, speed: f64| SolverBody {
+            inverse_mass,
+            inverse_inertia: DMat3::IDENTITY * inverse_mass,
+            velocity: Velocity { linear: DVec3::X * speed, angular: DVec3::ZERO },
+        };
+        let bodies = vec![body(0.0, 2.0), body(1.0, 4.0), body(0.0, 0.0)];
+        let rough =
+            |pair| ContactPoint { material: Material { friction: 0.5, restitution: 0.0 }, ..upright(pair) };
+        let system = System::new(bodies, &[rough([0, 1]), rough([1, 2])], |i| i);
+        let among = |company: Company| {
+            system.could_stick(Accuracy { precision: 1e-7, relative: 0.0, aim: 1.0, company, slow: 1.0 })
+        };
+        assert!(among(Company::Few) && !among(Company::Crowd) && !among(Company::Heap));
     }
 }

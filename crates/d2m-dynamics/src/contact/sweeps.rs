@@ -208,7 +208,7 @@ fn stopping(block: &Block, rates: [f64; 2]) -> Option<[f64; 2]> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::contact::ContactPoint;
     use crate::velocity::Velocity;
@@ -218,7 +218,7 @@ mod tests {
         Accuracy { precision: 1e-7, relative: 1.0 / 1024.0, aim: 1e-3, company: Company::Crowd, slow: 1.0 };
 
     /// So many bodies of mass one on each other, the lowest one on the ground, which is the last body; all fall at one speed.
-    fn column(count: usize, speed: f64) -> System {
+    pub(in crate::contact) fn column(count: usize, speed: f64) -> System {
         let body = |mass: f64, speed: f64| SolverBody {
             inverse_mass: mass,
             inverse_inertia: DMat3::IDENTITY * mass,

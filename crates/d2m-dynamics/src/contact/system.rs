@@ -254,8 +254,18 @@ impl System {
         if along >= target && *impulse == [0.0; 3] && matches!(block.law, Law::Cone { .. }) {
             return 0.0;
         }
+        let [_, t, u] = block.rates(|i| self.bodies[i].velocity);
+        self.natural_map(k, target, block.law.friction() * (t * t + u * u).sqrt())
+    }
+
+    /// That of one block with another shift s.
+    #[inline]
+    pub(super) fn natural_map(&self, k: usize, target: f64, shift: f64) -> f64 {
+        let (block, impulse) = (&self.blocks[k], &self.impulses[k]);
+        if block.scale == 0.0 || target == f64::NEG_INFINITY {
+            return 0.0;
+        }
         let mut rates = block.rates(|i| self.bodies[i].velocity);
-        let shift = block.law.friction() * (rates[1] * rates[1] + rates[2] * rates[2]).sqrt();
         rates[0] += shift - target + block.law.softness() * impulse[0];
         let nearest = block.law.project([0, 1, 2].map(|i| impulse[i] - rates[i] / block.scale));
         let off: f64 = (0..3).map(|i| (impulse[i] - nearest[i]) * (impulse[i] - nearest[i])).sum();

@@ -1,6 +1,7 @@
 //! Contacts that flights are certain to lead to are solved before they are met.
 
 use super::event::{Cause, Event};
+use super::resolve::LEEWAY;
 use super::{Key, Occasion, Step};
 use crate::contact::ContactPoint;
 use crate::pairs::{AROUND, measure};
@@ -48,6 +49,14 @@ impl View<'_> {
         let differs = rate(arm_a, arm_b) - met;
         let distance = point.distance - met * (self.met - self.time) - differs * (self.end - self.time);
         ContactPoint { arm_a, arm_b, distance, is_expected: true, ..*point }
+    }
+
+    /// Are these contacts, seen now, of other features, or do they differ in what they ask of flights by as much as counts?
+    fn differ(&self, old: &ContactPoint, new: &ContactPoint) -> bool {
+        let [a, b] = self.bodies;
+        let way = a.bound_approach(b) * (self.end - self.time);
+        let off = (new.distance - old.distance).abs() + (new.normal - old.normal).length() * way;
+        new.feature != old.feature || off > LEEWAY * new.gap
     }
 }
 
@@ -107,14 +116,52 @@ impl Step<'_> {
             let measured = measure(&sim.bodies, key, event.time, margin, gap, sim.material(key.0, key.1))
                 .unwrap_or_default();
             let view = View { bodies: [a, b], time, met: event.time, end };
-            let seen_now = |point| view.seen_now(point);
-            (key, measured.contacts.iter().map(seen_now).collect::<Vec<_>>())
+            let contacts: Vec<ContactPoint> = measured.contacts.iter().map(|c| view.seen_now(c)).collect();
+            let known = self.expected.get(&key).map_or(&[][..], Vec::as_slice);
+            let is_new = contacts.iter().any(|contact| known.iter().all(|old| view.differ(old, contact)));
+            (key, if is_new { contacts } else { Vec::new() })
         });
         let mut bodies = Vec::new();
         for (key, contacts) in found.into_iter().filter(|(_, contacts)| !contacts.is_empty()) {
-            self.expected.entry(key).or_default().extend(contacts);
+            // What the solution before heeded already is seen from where it leads now.
+            let known = self.expected.entry(key).or_default();
+            known.retain(|old| contacts.iter().all(|new| new.feature != old.feature));
+            known.extend(contacts);
             bodies.extend([key.0, key.1].into_iter().filter(|&i| self.sim.bodies[i].is_dynamic()));
         }
         bodies
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Body;
+    use crate::contact::upright;
+    use crate::faces::Faces;
+    use d2m_bvh::MeshTree;
+    use d2m_feature::FeaturePair;
+    use glam::DVec3;
+    use std::sync::Arc;
+
+    /// Where a round leads to what it heeded, the next one would find the same.
+    #[test]
+    fn contacts_that_ask_for_the_same_are_not_new() {
+        let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=1&y=1&z=1").unwrap()));
+        let faces = Arc::new(Faces::new(tree.mesh()));
+        let moving = Body::new("", Arc::clone(&tree)).with_linear_velocity(DVec3::NEG_Y);
+        let mut bodies = [Body::new("", tree), moving]
+            .map(|body| RigidBody::try_new(&body, Arc::clone(&faces), 0.0).unwrap());
+        bodies.iter_mut().for_each(|body| body.fly(body.velocity(), 1.0));
+        let [a, b] = &bodies;
+        let view = View { bodies: [a, b], time: 0.0, met: 0.5, end: 1.0 };
+        let old = ContactPoint { gap: 1e-3, ..upright([0, 1]) };
+        let turned = |angle: f64| DVec3::new(angle.sin(), angle.cos(), 0.0);
+        let little = ContactPoint { distance: 1e-5, normal: turned(1e-5), ..old };
+        assert!(!view.differ(&old, &old) && !view.differ(&old, &little));
+        assert!(view.differ(&old, &ContactPoint { distance: 1e-4, ..old }));
+        assert!(view.differ(&old, &ContactPoint { normal: turned(1e-3), ..old }));
+        let feature = FeaturePair::VertexFace { vertex: 1, face: 0 };
+        assert!(view.differ(&old, &ContactPoint { feature, ..old }));
     }
 }

@@ -195,16 +195,20 @@ impl<'s> Step<'s> {
 
     /// All events whose brackets overlap the first one's, and the bodies of them.
     fn gather(&mut self, first: Event) -> (Vec<Event>, Vec<usize>) {
-        let mut met = vec![first];
+        let (mut met, mut later) = (vec![first], Vec::new());
         while let Some(Reverse(event)) = self.heap.peek().copied() {
             if event.time > first.by || event.time >= self.end {
                 break;
             }
             self.heap.pop();
-            if self.is_current(&event) {
-                met.push(event);
+            if !self.is_current(&event) {
+                continue;
             }
+            // What follows its motion begins its next flight where the present one ends, and not before.
+            let follows = event.cause == Cause::Horizon && self.sim.bodies[event.bodies[0]].is_kinematic();
+            if follows && event.time > first.time { later.push(event) } else { met.push(event) }
         }
+        self.heap.extend(later.into_iter().map(Reverse));
         let mut seeds: Vec<usize> = met.iter().flat_map(|event| event.bodies).collect();
         // Flights that were planned to end here end with the event: what is left of them would be a segment far from their
         // middle.
@@ -241,5 +245,47 @@ impl<'s> Step<'s> {
         self.sim.greatest_energy = self.sim.greatest_energy.max(energy);
         self.sim.time = time;
         self.sim.put_to_sleep(length);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::listener::Nobody;
+    use crate::{Body, Kind, SimulationOptions};
+    use d2m_bvh::MeshTree;
+    use d2m_motion::ConstantTwist;
+    use std::sync::Arc;
+
+    /// An event whose bracket holds the end of a kinematic flight leaves that flight its own end: without it the flight would be queried
+    /// past what it is.
+    #[test]
+    fn kinematic_flights_end_where_they_end() {
+        let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=1&y=1&z=1").unwrap()));
+        let driven = Kind::Kinematic(Arc::new(ConstantTwist::REST));
+        let mut sim = Simulation::new(SimulationOptions::default()).unwrap();
+        sim.add(&Body::new("driven", Arc::clone(&cube)).with_kind(driven)).unwrap();
+        sim.add(&Body::new("free", cube).with_position(DVec3::X * 5.0)).unwrap();
+        let listener = &mut Nobody;
+        let mut step = Step::new(&mut sim, 1.0, listener);
+        let versions = [0, 1].map(|i| step.sim.bodies[i].version);
+        let contact = Event {
+            time: 0.1,
+            by: 0.3,
+            bodies: [0, 1],
+            versions,
+            cause: Cause::Contact,
+            normal: DVec3::X,
+            closing: 1.0,
+        };
+        let ends = |i: usize, time: f64| {
+            let (bodies, versions) = ([i; 2], [versions[i]; 2]);
+            Event { time, by: time, bodies, versions, cause: Cause::Horizon, ..contact }
+        };
+        step.heap.extend([ends(0, 0.2), ends(1, 0.2)].map(Reverse));
+        assert_eq!(step.gather(contact), (vec![contact, ends(1, 0.2)], vec![0, 1]));
+        assert_eq!(step.next_event(), Some(ends(0, 0.2)));
+        step.heap.push(Reverse(ends(0, 0.1)));
+        assert_eq!(step.gather(contact).0, [contact, ends(0, 0.1)]);
     }
 }

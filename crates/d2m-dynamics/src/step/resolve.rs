@@ -19,7 +19,7 @@ const SAME: f64 = 1.0 / 1024.0;
 /// Bodies whose expected contacts are solved, in a crowd, with what they press on and not with all that is connected.
 const FEW: usize = 8;
 /// The part of the gap by which a contact may close in what is left of the step before its body is solved with the others.
-const LEEWAY: f64 = 1.0 / 16.0;
+pub(super) const LEEWAY: f64 = 1.0 / 16.0;
 
 impl Step<'_> {
     /// Solves the velocities of the seeds and of all that are in contact with them, and starts their flights.
