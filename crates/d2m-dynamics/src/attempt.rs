@@ -181,9 +181,13 @@ impl Problem<'_> {
             end = now + 0.5 * (end - now);
             tried = self.attempt(now, end, Room::Kept);
         }
-        let most = (tried.system.left(tried.accuracy) * LEFT_OVER).max(OF_SPEED * tried.system.mean_speed());
         let closing = self.closing();
-        let most = closing.map_or(most, |closing| most.max(UNSOLVED * closing.rate));
+        let rate = closing.map_or(0.0, |closing| closing.rate);
+        // Where no velocities obey the law the nearest ones may be as large as normals are askew: no faster than bodies were, or are driven.
+        let speed = |s: &Cow<'_, RigidBody>| s.present_velocity().surface_speed(s.radius);
+        let speed = tried.system.mean_speed().min(moved().map(speed).fold(rate, f64::max));
+        let left = LEFT_OVER * tried.system.left(tried.accuracy);
+        let most = left.max(OF_SPEED * speed).max(UNSOLVED * rate);
         let is_cramped = !self.lasts(&tried);
         if !is_cramped && (tried.residual <= most || closing.is_none()) {
             return tried;

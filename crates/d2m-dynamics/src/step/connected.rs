@@ -42,8 +42,9 @@ impl Group {
             let key = (known.a, known.b);
             let first = self.contacts.partition_point(|c| (c.a, c.b) < key);
             let of_pair = self.contacts[first..].iter_mut().take_while(|c| (c.a, c.b) == key);
-            let is_same =
-                |c: &&mut ContactPoint| c.feature == known.feature && c.is_expected == known.is_expected;
+            let is_same = |c: &&mut ContactPoint| {
+                c.feature == known.feature && c.is_expected == known.is_expected && c.normal == known.normal
+            };
             if let Some(contact) = of_pair.into_iter().find(is_same) {
                 contact.impulse = part * known.impulse;
                 contact.sliding = known.sliding.map(|x| part * x);
