@@ -164,7 +164,9 @@ mod tests {
         let moving = Body::new("", Arc::clone(&tree)).with_linear_velocity(DVec3::NEG_Y);
         let mut bodies = [Body::new("", tree), moving]
             .map(|body| RigidBody::try_new(&body, Arc::clone(&faces), 0.0).unwrap());
-        bodies.iter_mut().for_each(|body| body.fly(body.velocity(), 1.0));
+        for body in &mut bodies {
+            body.fly(body.velocity(), 1.0);
+        }
         let [a, b] = &bodies;
         let view = View { bodies: [a, b], time: 0.0, met: 0.5, end: 1.0 };
         let old = ContactPoint { gap: 1e-3, ..upright([0, 1]) };
