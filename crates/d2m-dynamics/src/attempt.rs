@@ -2,7 +2,7 @@
 
 use crate::SimulationOptions;
 use crate::contact::{
-    Accuracy, Company, ContactPoint, NEAR, Room, SolverBody, Span, Start, System, add, select,
+    Accuracy, Company, ContactPoint, NEAR, Present, Room, SolverBody, Span, Start, System, add, select,
 };
 use crate::joined::Joined;
 use crate::momenta::Momenta;
@@ -103,15 +103,21 @@ pub(crate) struct Problem<'s> {
 pub(crate) struct Attempt {
     pub(crate) span: Span,
     pub(crate) end: f64,
+    pub(crate) system: System,
+    pub(crate) accuracy: Accuracy,
+    pub(crate) found: Found,
+}
+
+/// What a solution has found.
+#[derive(Clone)]
+pub(crate) struct Found {
     /// Those that count, with their impulses.
     pub(crate) contacts: Vec<ContactPoint>,
     /// Least rates of the contacts, and what impulses see to of that.
     pub(crate) targets: Vec<f64>,
     pub(crate) pushing: Vec<f64>,
-    pub(crate) system: System,
     /// Of each member.
     pulled: Vec<Option<Pull>>,
-    pub(crate) accuracy: Accuracy,
     pub(crate) residual: f64,
     /// How far joints are off what they ask for at the end, as a rate.
     missed: f64,
@@ -120,30 +126,30 @@ pub(crate) struct Attempt {
 impl Attempt {
     /// Puts the couples that brake the bodies behind the other contacts.
     pub(crate) fn couple(&mut self, members: &[usize]) {
-        self.contacts.truncate(self.targets.len());
-        self.contacts.extend(couples(&self.system, members, &self.pulled));
+        self.found.contacts.truncate(self.found.targets.len());
+        self.found.contacts.extend(couples(&self.system, members, &self.found.pulled));
     }
 
     /// Velocities of flights that also restore the gap, or make room for rotation; what kinetic energy that adds. None: there is nothing to
     /// restore, or no velocities are found that keep what room there is as long as the present ones do, which stay then.
     pub(crate) fn make_room(&mut self, inertia: &[(f64, DMat3)], gap: f64) -> Option<f64> {
-        if self.targets == self.pushing {
+        if self.found.targets == self.found.pushing {
             return None;
         }
         let (begun, before) = (self.system.present(), self.system.doubled_energy(inertia));
         let could_last = self.lasts(gap, |k| self.restored(k));
-        self.system.solve(&self.targets, self.accuracy, Start::Present);
+        self.system.solve(&self.found.targets, self.accuracy, Start::Present);
         if could_last && !self.lasts(gap, |_| 0.0) {
             self.system.take_back(begun);
             return None;
         }
-        self.system.store(&mut self.contacts);
+        self.system.store(&mut self.found.contacts);
         Some(0.5 * (self.system.doubled_energy(inertia) - before))
     }
 
     /// The part of what restores the gap at a contact that makes up for what the velocities are off the law.
     fn restored(&self, contact: usize) -> f64 {
-        RESTORED * (self.targets[contact] - self.pushing[contact])
+        RESTORED * (self.found.targets[contact] - self.found.pushing[contact])
     }
 
     /// Does each contact of which hardly any room is left keep some for a part of the flight that counts, if `added` is added to its rate?
@@ -151,7 +157,7 @@ impl Attempt {
     /// ones half of what is left then.
     pub(crate) fn lasts(&self, gap: f64, added: impl Fn(usize) -> f64) -> bool {
         let length = LASTING * self.span.remaining;
-        self.contacts.iter().enumerate().all(|(k, contact)| {
+        self.found.contacts.iter().enumerate().all(|(k, contact)| {
             let is_met = contact.row.is_none() && !contact.is_expected;
             let is_tight = is_met && contact.distance < LAST * gap;
             !is_tight || contact.shared_room() + (self.system.rate(k) + added(k)) * length >= 0.0
@@ -175,7 +181,7 @@ impl Problem<'_> {
         let mut end = if is_whole { end } else { moved().map(horizon).fold(end, f64::min) };
         let mut tried = self.attempt(now, end, Room::Kept);
         for _ in 0..MOST_HALVINGS {
-            if tried.missed <= OFF_JOINT * self.speed() {
+            if tried.found.missed <= OFF_JOINT * self.speed() {
                 break;
             }
             end = now + 0.5 * (end - now);
@@ -189,12 +195,12 @@ impl Problem<'_> {
         let left = LEFT_OVER * tried.system.left(tried.accuracy);
         let most = left.max(OF_SPEED * speed).max(UNSOLVED * rate);
         let is_cramped = !self.lasts(&tried);
-        if !is_cramped && (tried.residual <= most || closing.is_none()) {
+        if !is_cramped && (tried.found.residual <= most || closing.is_none()) {
             return tried;
         }
         let friction = match closing {
             _ if is_cramped => Friction::GivesWay,
-            Some(closing) if tried.residual >= LOCKED * closing.rate => Friction::Locks,
+            Some(closing) if tried.found.residual >= LOCKED * closing.rate => Friction::Locks,
             _ => Friction::Slips,
         };
         self.squeezed([now, end], closing, most, friction).unwrap_or(tried)
@@ -234,7 +240,7 @@ impl Problem<'_> {
         let contacts: Vec<ContactPoint> = self.contacts.iter().map(ContactPoint::without_friction).collect();
         let smooth = Problem { contacts: &contacts, ..*self };
         let slipping = smooth.attempt(now, end, Room::Kept);
-        let obeys = |attempt: &Attempt| attempt.residual <= most && self.lasts(attempt);
+        let obeys = |attempt: &Attempt| attempt.found.residual <= most && self.lasts(attempt);
         let is_possible = obeys(&slipping);
         match friction {
             Friction::Slips if is_possible => return None,
@@ -296,7 +302,7 @@ impl Problem<'_> {
     /// Do the brakes add no energy that counts? What forces have pulled taut for longer than a flight turns little, and gives back what the
     /// brakes took; where something snaps taut they could add any.
     fn is_quietly_braked(&self, attempt: &Attempt) -> bool {
-        let work = work(&attempt.system, &attempt.pulled);
+        let work = work(&attempt.system, &attempt.found.pulled);
         let inertia: Vec<(f64, DMat3)> = self.states.iter().map(|s| world_inertia(s)).collect();
         work <= WORK * attempt.system.doubled_energy(&inertia)
     }
@@ -315,55 +321,54 @@ impl Problem<'_> {
         };
         let free: Vec<SolverBody> = states.iter().map(start).collect();
         let rows = select(self.contacts, span, |body| free[place(body)].velocity);
-        let mut contacts: Vec<ContactPoint> = rows.iter().map(|row| self.contacts[row.contact]).collect();
-        let mut targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
+        let contacts: Vec<ContactPoint> = rows.iter().map(|row| self.contacts[row.contact]).collect();
+        let targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
         let precision = PRECISION * options.gap / options.step;
         let slow = span.resting_speed.max(options.gap / options.step);
         let accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM, slow, company: self.company };
-        let mut pushing: Vec<f64> = rows.iter().map(|row| row.pushing).collect();
+        let pushing: Vec<f64> = rows.iter().map(|row| row.pushing).collect();
         let spins: Vec<DVec3> = free.iter().map(|body| body.velocity.angular).collect();
         let mut system = System::new(free, &contacts, place).for_flights(&contacts, &targets, span.remaining);
         system.warm_start(&contacts);
-        let (mut residual, mut off) = (0.0, 0.0);
-        let mut pulled = Vec::new();
+        let found = Found { contacts, targets, pushing, pulled: Vec::new(), residual: 0.0, missed: 0.0 };
+        let mut attempt = Attempt { span, end, system, accuracy, found };
+        let mut nearest: Option<(Found, Present)> = None;
         for correction in 0.. {
+            let Attempt { system, found, .. } = &mut attempt;
             let start = if correction == 0 { Start::Sticking } else { Start::Present };
-            residual = system.solve(&pushing, accuracy, start);
-            system.store(&mut contacts);
+            found.residual = system.solve(&found.pushing, accuracy, start);
+            system.store(&mut found.contacts);
             let tolerance = system.tolerance(accuracy);
             if brakes == Brakes::OfSwings && correction < PULLS {
-                pulled = pulls(&pulled, states, &spins, &contacts, span.remaining, place);
+                found.pulled = pulls(&found.pulled, states, &spins, &found.contacts, span.remaining, place);
             }
-            let is_off = put_right(&mut system, states, &contacts, span, place, (&pulled, tolerance));
+            let is_off = put_right(system, states, &found.contacts, span, place, (&found.pulled, tolerance));
             let ends = Ends { joints: self.joints, states, span };
-            let missed = ends.miss(&system, &contacts, place);
-            off = missed.iter().map(|missed| missed.rate.abs()).fold(0.0, f64::max);
+            let missed = ends.miss(system, &found.contacts, place);
+            found.missed = missed.iter().map(|missed| missed.rate.abs()).fold(0.0, f64::max);
             let most = match (missed.is_empty(), system.is_crowd()) {
                 (true, true) => CROWD_CORRECTIONS,
                 (true, false) => CORRECTIONS,
                 (false, _) => JOINT_CORRECTIONS,
             };
-            if correction == most || !is_off && off <= precision {
+            if correction == most || !is_off && found.missed <= precision {
                 break;
             }
+            if nearest.as_ref().is_none_or(|(nearest, _)| found.missed < nearest.missed) && !missed.is_empty()
+            {
+                nearest = Some((found.clone(), system.present()));
+            }
             for missed in missed {
-                pushing[missed.row] -= missed.rate;
-                targets[missed.row] -= missed.rate;
+                found.pushing[missed.row] -= missed.rate;
+                found.targets[missed.row] -= missed.rate;
             }
             system.renew();
         }
-        let mut attempt = Attempt {
-            span,
-            end,
-            contacts,
-            targets,
-            pushing,
-            system,
-            pulled,
-            accuracy,
-            residual,
-            missed: off,
-        };
+        // Where no velocities lead to what joints ask for, as of a bridge without slack, corrections lead further and further off.
+        if let Some((found, present)) = nearest.filter(|(found, _)| found.missed < attempt.found.missed) {
+            attempt.found = found;
+            attempt.system.take_back(present);
+        }
         attempt.couple(self.members);
         attempt
     }

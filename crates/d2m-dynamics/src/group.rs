@@ -89,14 +89,14 @@ pub(crate) fn solve(
     let problem =
         Problem { members: &members, states: &states, contacts: &island.contacts, options, joints, company };
     let mut attempt = problem.solve(clock);
-    let (end, residual) = (attempt.end, attempt.residual);
+    let (end, residual) = (attempt.end, attempt.found.residual);
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
     // Springs and motors may work; what joints alone do is balanced by the middle of flights, not by accounts.
     let driven = states.iter().any(|s| !moves(s) && !s.stands_still())
         || island.contacts.iter().any(|c| c.row.is_some() || c.running != [0.0; 2]);
     let mut rests = vec![Momenta::default(); members.len()];
-    add(&attempt.contacts, &mut rests, place);
-    let mut kept = attempt.contacts.clone();
+    add(&attempt.found.contacts, &mut rests, place);
+    let mut kept = attempt.found.contacts.clone();
     // What restores the gap, or makes room for rotation, moves the bodies in this flight and leaves no momentum.
     let velocities = |system: &System| system.bodies.iter().map(|body| body.velocity).collect::<Vec<_>>();
     let mut physical = velocities(&attempt.system);
@@ -112,8 +112,8 @@ pub(crate) fn solve(
             // Then it is made by impulses like others, and the account sees to their energy.
             attempt.couple(&members);
             rests.fill(Momenta::default());
-            add(&attempt.contacts, &mut rests, place);
-            kept.clone_from(&attempt.contacts);
+            add(&attempt.found.contacts, &mut rests, place);
+            kept.clone_from(&attempt.found.contacts);
             physical = velocities(&attempt.system);
         }
     }

@@ -27,4 +27,4 @@ pub(crate) use point::upright;
 pub(crate) use point::{ContactPoint, JointRow, add, tangents};
 pub(crate) use rows::{HIT, NEAR, Room, Span, select};
 pub(crate) use solver_body::SolverBody;
-pub(crate) use system::System;
+pub(crate) use system::{Present, System};

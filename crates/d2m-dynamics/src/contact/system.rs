@@ -114,6 +114,9 @@ pub(crate) struct System {
     pub(super) has_joints: bool,
 }
 
+/// The impulses of the rows and the velocities of the bodies.
+pub(crate) type Present = (Vec<[f64; 3]>, Vec<Velocity>);
+
 /// Contacts of one pair from which on it is conforming: as of a pin in its hole.
 const MANY: usize = 8;
 
@@ -198,12 +201,12 @@ impl System {
     }
 
     /// The impulses and the velocities, to go back to.
-    pub(crate) fn present(&self) -> (Vec<[f64; 3]>, Vec<Velocity>) {
+    pub(crate) fn present(&self) -> Present {
         (self.impulses.clone(), self.velocities())
     }
 
     /// Goes back to them.
-    pub(crate) fn take_back(&mut self, (impulses, velocities): (Vec<[f64; 3]>, Vec<Velocity>)) {
+    pub(crate) fn take_back(&mut self, (impulses, velocities): Present) {
         self.impulses = impulses;
         for (body, velocity) in self.bodies.iter_mut().zip(velocities) {
             body.velocity = velocity;
