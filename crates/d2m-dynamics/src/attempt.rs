@@ -25,7 +25,7 @@ const CORRECTIONS: u32 = 3;
 const CROWD_CORRECTIONS: u32 = 1;
 /// And with the ends of jointed bodies' flights put right.
 const JOINT_CORRECTIONS: u32 = 8;
-/// Solutions, of these, whose impulses may brake what swings fast: the first one has no brakes, and what it has is rarely the force.
+/// Solutions, of these, whose impulses may brake what oscillates fast: the first one has no brakes, and what it has is rarely the force.
 const PULLS: u32 = 2;
 /// The part of twice the kinetic energy that the brakes of a flight may add: in a hundred flights not more than a hundredth.
 const WORK: f64 = 1.0 / 16384.0;
@@ -84,7 +84,7 @@ enum Friction {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Brakes {
     None,
-    OfSwings,
+    OfOscillations,
 }
 
 /// What velocities are solved for.
@@ -288,10 +288,10 @@ impl Problem<'_> {
         self.members.binary_search(&body).unwrap_or_default()
     }
 
-    /// With brakes on what swings fast, unless these do work that counts.
+    /// With brakes on what oscillates fast, unless these do work that counts.
     fn attempt(&self, now: f64, end: f64, room: Room) -> Attempt {
         if self.hangs_by_light_bodies() {
-            let braked = self.attempt_with(now, end, room, Brakes::OfSwings);
+            let braked = self.attempt_with(now, end, room, Brakes::OfOscillations);
             if self.is_quietly_braked(&braked) {
                 return braked;
             }
@@ -339,7 +339,7 @@ impl Problem<'_> {
             found.residual = system.solve(&found.pushing, accuracy, start);
             system.store(&mut found.contacts);
             let tolerance = system.tolerance(accuracy);
-            if brakes == Brakes::OfSwings && correction < PULLS {
+            if brakes == Brakes::OfOscillations && correction < PULLS {
                 found.pulled = pulls(&found.pulled, states, &spins, &found.contacts, span.remaining, place);
             }
             let is_off = put_right(system, states, &found.contacts, span, place, (&found.pulled, tolerance));
@@ -365,7 +365,9 @@ impl Problem<'_> {
             system.renew();
         }
         // Where no velocities lead to what joints ask for, as of a bridge without slack, corrections lead further and further off.
-        if let Some((found, present)) = nearest.filter(|(found, _)| found.missed < attempt.found.missed) {
+        let gets_nearer =
+            |found: &Found| found.missed < attempt.found.missed && attempt.found.missed > precision;
+        if let Some((found, present)) = nearest.filter(|(found, _)| gets_nearer(found)) {
             attempt.found = found;
             attempt.system.take_back(present);
         }

@@ -1,15 +1,15 @@
-//! What the pull of joints does to bodies that swing faster than steps are long.
+//! What the pull of joints does to bodies that oscillate faster than steps are long.
 //!
-//! A body with the moment of inertia I that hangs between forces F, which pull outwards at arms r, swings across them at the rate ω with
+//! A body with the moment of inertia I that hangs between forces F, which pull outwards at arms r, oscillates across them at the rate ω with
 //! ω² = Σ F·r / I. Of light bodies between heavy ones that is much faster than steps are long, and impulses at the arms of a flight's start
-//! make more of each swing, from ω h = 2 on. There the change of their spin is braked by how much more the forces turn them back at its end:
+//! make more of each oscillation, from ω h = 2 on. There the change of their spin is braked by how much more the forces turn them back at its end:
 //!
 //! ```text
 //! I Δω = Σ r × F h − G Δω,     G = (2 − 1/s) h² K,     K = Σ (r·F)₊ (1 − F Fᵀ/F²),     s = h² tr(I⁻¹ K)
 //! ```
 //!
 //! where s is above one half, so that little changes for what is slower. It is Newmark's rule (J. Eng. Mech. Div. 85(3), 1959): with G it is
-//! h² K/(I + G) that would have to be above 4, which is some 1/2 at most. What keeps its spin is not braked, so that swings keep their energy;
+//! h² K/(I + G) that would have to be above 4, which is some 1/2 at most. What keeps its spin is not braked, so that oscillations keep their energy;
 //! the error is one of the second order in h, as that of steps is in any case.
 
 use crate::contact::{ContactPoint, SolverBody, System};

@@ -6,7 +6,7 @@ use glam::{DMat3, DQuat, DVec3};
 /// What brakes the change of a body's spin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pull {
-    /// How far its swing leads in a flight: the square of an angle.
+    /// How far its oscillation leads in a flight: the square of an angle.
     pub(crate) speed: f64,
     /// The angular impulse by change of spin, world axes.
     pub(crate) stiffness: DMat3,

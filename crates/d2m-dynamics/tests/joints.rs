@@ -5,7 +5,7 @@ use d2m_dynamics::{
     Body, BodyId, Joint, JointKind, Mass, Motor, MotorTarget, Simulation, SimulationError, SimulationOptions,
     Spring,
 };
-use glam::{DQuat, DVec3};
+use glam::{BVec3, DQuat, DVec3};
 use std::sync::Arc;
 
 /// A bar of ten kilograms and a length of one, along x about this point.
@@ -293,4 +293,19 @@ fn a_rope_that_snaps_taut_gains_no_energy() {
         most = most.max((energy(&simulation) - first) / (1e3 * 9.81 * 0.4));
     }
     assert!(most < 0.1, "{most}");
+}
+
+/// What is locked is so to rounding, also while the body tumbles about what is left free.
+#[test]
+fn a_body_stays_in_its_plane() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()));
+    let thrown = Body::new("thrown", cube).with_linear_velocity(DVec3::new(1.0, 2.0, 3.0));
+    let thrown = simulation.add(&thrown.with_angular_velocity(DVec3::ONE)).unwrap();
+    let flat = BVec3::new(false, false, true);
+    simulation.add_joint(&Joint::locks(thrown, flat, !flat)).unwrap();
+    run(&mut simulation, 0.5);
+    let (place, turn) = (simulation.position(thrown), simulation.orientation(thrown));
+    assert!((place.x - 0.5).abs() < 1e-9 && place.z.abs() < 1e-9, "{place}");
+    assert!(turn.x.abs() < 1e-9 && turn.y.abs() < 1e-9 && turn.z.abs() > 0.1, "{turn}");
 }

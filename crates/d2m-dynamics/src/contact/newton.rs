@@ -160,8 +160,10 @@ impl System {
                 let own = |k: usize| of.natural_map(k, targets[k], shift[k]);
                 (0..targets.len()).map(own).fold(0.0, f64::max)
             };
-            // What yields creeps, which is no sliding: the shifts stay as they are until it does so no more.
-            if is_found && !effort.is_short() && yielded(self) > YIELDED * residual {
+            // What yields creeps, which is no sliding: the shifts stay as they are until it does so no more. Rows of joints begin so hard that
+            // each round leaves next to nothing of it, and rounding would count on harder ones.
+            let may_harden = is_found && !effort.is_short() && !self.has_joints;
+            if may_harden && yielded(self) > YIELDED * residual {
                 soft = (HARDER * soft).max(hardest);
                 state = (impulses, shift, velocity);
                 continue;
