@@ -4,10 +4,11 @@ use crate::SimulationOptions;
 use crate::contact::{
     Accuracy, Company, ContactPoint, NEAR, Present, Room, SolverBody, Span, Start, System, add, select,
 };
-use crate::joined::Joined;
+use crate::joined::{Ahead, Joined};
 use crate::momenta::Momenta;
 use crate::pull::{couples, pulls, work};
 use crate::rigid_body::{RigidBody, Splits};
+use crate::taut::locked;
 use crate::turning::Pull;
 use crate::velocity::Velocity;
 use glam::{DMat3, DVec3};
@@ -36,6 +37,8 @@ const MANY: usize = 20;
 /// The part of a gap a step that the ends of flights may be off what joints ask for: what is more is not corrected but diverges, as where the
 /// end of a long chain whips round, and shorter flights are solved for.
 const OFF_JOINT: f64 = 1e-2;
+/// The square of the angle by which an oscillation leads in a flight, from which on flights make more of it: where impulses act at their starts.
+const UNSTABLE: f64 = 4.0;
 /// Halvings of such flights.
 const MOST_HALVINGS: u32 = 6;
 /// The part of the rate at which something closes in, and how much more than solutions leave anyway, from which on no velocities obey the law.
@@ -121,6 +124,8 @@ pub(crate) struct Found {
     pub(crate) residual: f64,
     /// How far joints are off what they ask for at the end, as a rate.
     missed: f64,
+    /// Do corrections of that lead further off?
+    diverges: bool,
 }
 
 impl Attempt {
@@ -180,6 +185,9 @@ impl Problem<'_> {
         let horizon = |s: &Cow<'_, RigidBody>| s.horizon_within(end, self.options.step, splits);
         let mut end = if is_whole { end } else { moved().map(horizon).fold(end, f64::min) };
         let mut tried = self.attempt(now, end, Room::Kept);
+        if let Some(stopped) = self.stopped(&tried, [now, end]) {
+            return stopped;
+        }
         for _ in 0..MOST_HALVINGS {
             if tried.found.missed <= OFF_JOINT * self.speed() {
                 break;
@@ -204,6 +212,31 @@ impl Problem<'_> {
             _ => Friction::Slips,
         };
         self.squeezed([now, end], closing, most, friction).unwrap_or(tried)
+    }
+
+    /// The bodies of closed chains as one, where their joints cannot be met at the end of a flight, nor of one half as long, because what pulls
+    /// them taut turns them to and fro faster than flights could follow.
+    fn stopped(&self, tried: &Attempt, [now, end]: [f64; 2]) -> Option<Attempt> {
+        let half = now + 0.5 * (end - now);
+        if !tried.found.diverges
+            || !self.is_taut(tried)
+            || !self.attempt(now, half, Room::Kept).found.diverges
+        {
+            return None;
+        }
+        let ahead = Ahead { length: end - now, step: self.options.step, forces: false };
+        let (contacts, joints) = locked(self.members, self.states, self.contacts, self.joints, ahead)?;
+        let attempt = Problem { contacts: &contacts, joints: &joints, ..*self }.attempt(now, end, Room::Kept);
+        (attempt.found.missed <= OFF_JOINT * self.speed() && self.lasts(&attempt)).then_some(attempt)
+    }
+
+    /// Do joints pull bodies to and fro faster than flights could follow?
+    fn is_taut(&self, attempt: &Attempt) -> bool {
+        let spins: Vec<DVec3> = attempt.system.bodies.iter().map(|body| body.velocity.angular).collect();
+        let length = attempt.span.remaining;
+        let found = &attempt.found.contacts;
+        let pulls = pulls(&[], self.states, &spins, found, length, |body| self.place(body));
+        pulls.into_iter().flatten().any(|pull| pull.speed >= UNSTABLE)
     }
 
     /// Do joints hold bodies of like masses? Light ones between heavy ones are pulled to and fro faster than they turn.
@@ -330,9 +363,18 @@ impl Problem<'_> {
         let spins: Vec<DVec3> = free.iter().map(|body| body.velocity.angular).collect();
         let mut system = System::new(free, &contacts, place).for_flights(&contacts, &targets, span.remaining);
         system.warm_start(&contacts);
-        let found = Found { contacts, targets, pushing, pulled: Vec::new(), residual: 0.0, missed: 0.0 };
+        let found = Found {
+            contacts,
+            targets,
+            pushing,
+            pulled: Vec::new(),
+            residual: 0.0,
+            missed: 0.0,
+            diverges: false,
+        };
         let mut attempt = Attempt { span, end, system, accuracy, found };
         let mut nearest: Option<(Found, Present)> = None;
+        let mut uncorrected = None;
         for correction in 0.. {
             let Attempt { system, found, .. } = &mut attempt;
             let start = if correction == 0 { Start::Sticking } else { Start::Present };
@@ -346,6 +388,7 @@ impl Problem<'_> {
             let ends = Ends { joints: self.joints, states, span };
             let missed = ends.miss(system, &found.contacts, place);
             found.missed = missed.iter().map(|missed| missed.rate.abs()).fold(0.0, f64::max);
+            found.diverges = found.missed > *uncorrected.get_or_insert(found.missed);
             let most = match (missed.is_empty(), system.is_crowd()) {
                 (true, true) => CROWD_CORRECTIONS,
                 (true, false) => CORRECTIONS,
@@ -368,7 +411,7 @@ impl Problem<'_> {
         let gets_nearer =
             |found: &Found| found.missed < attempt.found.missed && attempt.found.missed > precision;
         if let Some((found, present)) = nearest.filter(|(found, _)| gets_nearer(found)) {
-            attempt.found = found;
+            attempt.found = Found { diverges: attempt.found.diverges, ..found };
             attempt.system.take_back(present);
         }
         attempt.couple(self.members);

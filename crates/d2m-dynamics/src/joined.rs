@@ -117,6 +117,23 @@ impl Joined {
         }
     }
 
+    /// Does it connect bodies, rather than lock axes of one in the world?
+    pub(crate) fn is_between_bodies(&self) -> bool {
+        !matches!(self.joint.kind, JointKind::Locked { .. })
+    }
+
+    /// A joint that holds the bodies as they are, at the same point.
+    pub(crate) fn fixed_at(&self, [a, b]: [&RigidBody; 2]) -> Self {
+        let point = b.position + b.orientation * self.arms[1];
+        let joint = Joint { kind: JointKind::Fixed, limits: None, ..self.joint.clone() };
+        Self {
+            joint,
+            arms: [a.orientation.conjugate() * (point - a.position), self.arms[1]],
+            turn: a.orientation.conjugate() * b.orientation,
+            ..self.clone()
+        }
+    }
+
     pub(crate) fn take_out(&mut self) {
         self.is_gone = true;
     }
@@ -196,8 +213,7 @@ impl Joined {
 
     /// The rows of the next flight: impulses act where the bodies are. The rates of equations are corrected until the flight's end is where
     /// it should be ([`Self::aims`]), which makes it the method SHAKE: symplectic, so that energy does not drift.
-    pub(crate) fn rows(&self, number: usize, bodies: &[RigidBody], ahead: Ahead) -> Vec<ContactPoint> {
-        let pair = self.bodies.map(|i| &bodies[i]);
+    pub(crate) fn rows(&self, number: usize, pair: [&RigidBody; 2], ahead: Ahead) -> Vec<ContactPoint> {
         let arms = [0, 1].map(|k| pair[k].orientation * self.arms[k]);
         let points = [0, 1].map(|k| pair[k].position + arms[k]);
         let axis = pair[0].orientation * self.axes[0];

@@ -67,6 +67,7 @@ mod sleep;
 mod snapshot;
 mod start;
 mod step;
+mod taut;
 mod touches;
 mod turning;
 mod union;

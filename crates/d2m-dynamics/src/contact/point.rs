@@ -88,6 +88,14 @@ impl ContactPoint {
         self.normal.dot(b.of_point(self.arm_b) - a.of_point(self.arm_a))
     }
 
+    /// The number of the joint of which it is a row.
+    pub(crate) fn joint(&self) -> Option<usize> {
+        match (self.row, self.feature) {
+            (Some(_), FeaturePair::VertexFace { face, .. }) => Some(face as usize),
+            _ => None,
+        }
+    }
+
     /// By how much it may close in a flight that shares what room there is, at least.
     pub(crate) fn shared_room(&self) -> f64 {
         self.distance - SHARED * self.distance.min(self.gap)

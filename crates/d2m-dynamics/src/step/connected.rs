@@ -109,7 +109,7 @@ impl Step<'_> {
                 continue;
             }
             group.joints.insert(place, number);
-            group.contacts.extend(joined.rows(number, &sim.bodies, ahead));
+            group.contacts.extend(joined.rows(number, joined.bodies.map(|i| &sim.bodies[i]), ahead));
             let is_new =
                 |i: &usize| !group.is_member[*i] && sim.bodies[*i].is_dynamic() && !sim.bodies[*i].held;
             next.extend(joined.bodies.into_iter().filter(is_new));

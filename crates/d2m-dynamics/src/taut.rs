@@ -1,0 +1,57 @@
+//! Closed chains that are pulled taut.
+//!
+//! Joints that close a chain may leave it no way to move although their equations for velocities do: a straight bridge of planks that is pinned
+//! at both ends gives way across it only by lengths of the second order. No impulse has an arm there, so the corrections of a flight's end
+//! diverge in flights of any length. Such a chain stops: its bodies move as one until the end of the flight, which keeps momenta and takes
+//! the energy that they move against each other with, as an inelastic impact does.
+
+use crate::contact::ContactPoint;
+use crate::joined::{Ahead, Joined};
+use crate::rigid_body::RigidBody;
+use crate::union::{join, root};
+use std::borrow::Cow;
+
+/// Of the contacts of an island, with its bodies: rows by which all joints hold their bodies as they are, and these joints. None: the joints
+/// close no chain. What stands still or follows its motion is one body here.
+pub(crate) fn locked(
+    members: &[usize],
+    states: &[Cow<'_, RigidBody>],
+    contacts: &[ContactPoint],
+    joints: &[Joined],
+    ahead: Ahead,
+) -> Option<(Vec<ContactPoint>, Vec<Joined>)> {
+    let place = |body: usize| members.binary_search(&body).unwrap_or_default();
+    let mut numbers: Vec<usize> = contacts.iter().filter_map(ContactPoint::joint).collect();
+    numbers.dedup();
+    numbers.retain(|&number| joints[number].is_between_bodies());
+    if !closes_chain(&numbers, states, joints, place) {
+        return None;
+    }
+    let mut held = joints.to_vec();
+    let is_replaced = |contact: &&ContactPoint| contact.joint().is_some_and(|joint| numbers.contains(&joint));
+    let mut rows: Vec<ContactPoint> = contacts.iter().filter(|c| !is_replaced(c)).copied().collect();
+    for number in numbers {
+        let pair = joints[number].bodies.map(|body| &*states[place(body)]);
+        held[number] = joints[number].fixed_at(pair);
+        rows.extend(held[number].rows(number, pair, ahead));
+    }
+    Some((rows, held))
+}
+
+/// Do these joints close a chain?
+fn closes_chain(
+    numbers: &[usize],
+    states: &[Cow<'_, RigidBody>],
+    joints: &[Joined],
+    place: impl Fn(usize) -> usize,
+) -> bool {
+    let ground = states.len();
+    let mut parent: Vec<usize> = (0..=ground).collect();
+    numbers.iter().any(|&number| {
+        let moves = |body: usize| states[place(body)].is_dynamic() && !states[place(body)].held;
+        let [a, b] = joints[number].bodies.map(|body| if moves(body) { place(body) } else { ground });
+        let is_closed = root(&mut parent, a) == root(&mut parent, b);
+        join(&mut parent, a, b);
+        is_closed
+    })
+}
