@@ -24,14 +24,15 @@
 
 use crate::clearance::{ROUNDING, sizes};
 use crate::hollow::free;
-use crate::rigid_body::RigidBody;
+use crate::rigid_body::{AXES_REACH, RigidBody};
+use d2m_bvh::Window;
 use d2m_motion::Pose;
 use glam::DVec3;
 
-/// How much further than a body reaches its axis is followed.
-const BEYOND: f64 = 1.0625;
 /// A body whose turn moves none of its points by more than this part of what is to be shown does not turn, but for that.
 const STILL: f64 = 1.0 / 16.0;
+/// Parts of a flight for which axes are tried one by one: what the axis of a body turns in a part is so much less.
+const MOST_PARTS: u32 = 8;
 /// Cosine of the angle between the spin and an axis of the mesh up to which that axis is taken: a fifth of a radian.
 const NEAR_AXIS: f64 = 0.98;
 
@@ -53,6 +54,24 @@ pub(crate) fn is_apart_along_axis([a, b]: [&RigidBody; 2], now: f64, tau: f64, n
         .any(|pair| Nested::new(pair, now, tau, needed).is_some_and(|nested| nested.bound() > needed + lost))
 }
 
+/// Until when that is known of two bodies in a window of their flights: no earlier than it begins.
+pub(crate) fn apart_along_axis_until(bodies: [&RigidBody; 2], window: Window, needed: f64) -> f64 {
+    let time = |part: u32| {
+        let passed = window.length() * (f64::from(part) / f64::from(MOST_PARTS));
+        if part == MOST_PARTS { window.end() } else { (window.start() + passed).min(window.end()) }
+    };
+    let (mut done, mut next) = (0, MOST_PARTS);
+    while next > 0 && done < MOST_PARTS {
+        let (from, to) = (time(done), time(done + next));
+        if is_apart_along_axis(bodies, from, to - from, needed) {
+            done += next;
+        } else {
+            next /= 2;
+        }
+    }
+    time(done)
+}
+
 /// A body in another one, for a flight.
 struct Nested<'s> {
     inner: &'s RigidBody,
@@ -70,8 +89,9 @@ struct Nested<'s> {
 /// A body that turns, about almost this axis through its center.
 #[derive(Clone, Copy, PartialEq)]
 struct Turning {
-    /// In the axes of the mesh, which keep it.
+    /// In the axes of the mesh, which keep it; which of these it is, if it is one.
     own: DVec3,
+    of_mesh: Option<usize>,
     /// In the middle of the flight.
     axis: DVec3,
     /// How far from that direction, as an angle, it is at other times.
@@ -84,10 +104,10 @@ impl Turning {
         let spin = body.flight.angular_velocity();
         let rotation = body.pose_at(now + 0.5 * tau).rotation;
         let turns = rotation.conjugate() * spin.try_normalize()?;
-        let near = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().find(|axis| axis.dot(turns).abs() > NEAR_AXIS);
-        let own = near.unwrap_or(turns);
+        let of_mesh = DVec3::AXES.iter().position(|axis| axis.dot(turns).abs() > NEAR_AXIS);
+        let own = of_mesh.map_or(turns, |k| DVec3::AXES[k]);
         let axis = rotation * own;
-        Some(Self { own, axis, off: spin.cross(axis).length() * (0.5 * tau) })
+        Some(Self { own, of_mesh, axis, off: spin.cross(axis).length() * (0.5 * tau) })
     }
 }
 
@@ -137,10 +157,11 @@ impl<'s> Nested<'s> {
     /// A lower bound of the distance, but for roundings.
     fn bound(&self) -> f64 {
         let [turns, Some(about)] = self.turning else { return self.bound_at_rest() };
-        let reach = BEYOND * self.outer.radius;
-        let center = self.outer.center;
-        let line = [center - about.own * reach, center + about.own * reach];
-        let free = free(&self.outer.tree, line) - self.outer.rounding;
+        let along = || {
+            let (center, way) = (self.outer.center, about.own * (AXES_REACH * self.outer.radius));
+            free(&self.outer.tree, [center - way, center + way])
+        };
+        let free = about.of_mesh.map_or_else(along, |k| self.outer.bores[k]) - self.outer.rounding;
         if free <= self.needed {
             return 0.0;
         }
@@ -192,7 +213,7 @@ impl<'s> Nested<'s> {
     /// How far from the axis the parts of the edges are at most that come as near as twice what is needed to the places of the outer body
     /// along it, at any time of the flight.
     fn farthest(&self, inner: &Inner, about: Turning) -> f64 {
-        let Turning { own, axis, off } = about;
+        let Turning { own, axis, off, .. } = about;
         let places = self.outer.tree.mesh().vertices().iter().map(|&v| (v - self.outer.center).dot(own));
         let (low, high) =
             places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(z), high.max(z)));
@@ -274,12 +295,12 @@ mod tests {
     }
 
     /// Pins in rings, each of which turns or not, about its axis or almost, askew, off the middle, and on their way: nothing is shown that is
-    /// not so, and about the axis most of what is so.
+    /// not so, and about the axis most of what is so. Where it is so for a part of the flight, that is shown up to some part.
     #[test]
     fn pins_in_rings_are_as_far_apart_as_is_shown() {
         let state = &mut 5;
         let (pin, ring) = (shape("shaft?triangles=300"), shape("bearing?triangles=400&clearance=0.05"));
-        let mut shown = [[0; 4]; 4];
+        let (mut shown, mut in_part) = ([[0; 4]; 4], 0);
         for k in 0..160 {
             let askew = 0.02 * draw(state).abs();
             let (mut spins, wobble) = ([0.0; 2], [0.0, 0.1, 0.5][k / 4 % 3]);
@@ -305,10 +326,15 @@ mod tests {
                 assert!(!is_apart || part < 1.0, "{k}: {least}");
                 shown[k % 4][place] += usize::from(is_apart);
             }
+            let (window, needed) = (Window::try_new(now, now + tau).unwrap(), 0.9 * least_at(bodies, now));
+            let until = apart_along_axis_until(bodies, window, needed);
+            assert!(self::least(bodies, now, until - now) >= needed, "{k}: {until}");
+            in_part += usize::from(until > now && until < window.end());
         }
         // Neither turns; the pin; the ring; both. 40 of each.
         assert_eq!(shown[0], [0; 4]);
         assert!(shown[1..].iter().all(|shown| shown[0] > 13 && shown[1] > 6), "{shown:?}");
+        assert!(in_part > 10, "{in_part}");
     }
 
     /// A blade that turns about an axis askew in its mesh, which lies far from the origin of its frame, so that the ends of that axis are

@@ -5,7 +5,7 @@ use crate::clearance::{Clearance, approach, bound_along};
 use crate::concluded::conclude;
 use crate::contact::{ContactPoint, Material, tangents};
 use crate::faces::vertices_of;
-use crate::nested::{bound_from_centers, is_apart_along_axis};
+use crate::nested::{apart_along_axis_until, bound_from_centers};
 use crate::rigid_body::RigidBody;
 #[cfg(feature = "audit")]
 use d2m_bvh::audit::Place;
@@ -181,16 +181,16 @@ pub(crate) fn fly(
     node_tests: u64,
     pair: &mut Pair,
 ) -> Result<Outcome, QueryError> {
-    if is_proven_clear(a, b, window, pair)? {
-        #[cfg(feature = "audit")]
-        conclude(
-            Place::DynamicsClearance,
-            [a, b],
-            [window.start(), window.end()],
-            pair.separation() * (1.0 + SLACK),
-        );
+    let until = proven_clear_until(a, b, window, pair)?;
+    #[cfg(feature = "audit")]
+    if until > window.start() {
+        let apart = pair.separation() * (1.0 + SLACK);
+        conclude(Place::DynamicsClearance, [a, b], [window.start(), until], apart);
+    }
+    if until >= window.end() {
         return Ok(Outcome::Clear);
     }
+    let window = Window::try_new(until, window.end())?;
     let mut separation = pair.separation();
     while separation >= LEAST * pair.gap {
         let options = QueryOptions::default()
@@ -212,48 +212,50 @@ pub(crate) fn fly(
     Ok(Outcome::Stuck)
 }
 
-/// Do the bodies stay apart by more than a query would call met, as follows from their distance or along a direction? Then the query
-/// would answer so, too.
-fn is_proven_clear(
+/// Until when the bodies stay apart by more than a query would call met, as follows from their distance, along a direction or from an axis: a query
+/// would answer so, too. No earlier than the window begins.
+fn proven_clear_until(
     a: &RigidBody,
     b: &RigidBody,
     window: Window,
     pair: &mut Pair,
-) -> Result<bool, QueryError> {
+) -> Result<f64, QueryError> {
     let (now, length) = (window.start(), window.length());
     let needed = pair.separation() * (1.0 + SLACK);
     if pair.clearance.is_some_and(|known| known.bound([a, b], now, length) > needed) {
-        return Ok(true);
+        return Ok(window.end());
     }
     if bound_from_centers([a, b], now, length) > needed {
-        return Ok(true);
+        return Ok(window.end());
     }
     let along = |normal: DVec3, spin: DVec3| {
         bound_along(normal, spin, [a, b], now, length).is_some_and(|bound| bound > needed)
     };
     let spins = [a, b].map(|body| body.flight.angular_velocity());
     if pair.normal.is_some_and(|normal| spins.into_iter().any(|spin| along(normal, spin))) {
-        return Ok(true);
+        return Ok(window.end());
     }
     if pair.axes.is_due() {
-        let is_clear = is_apart_along_axis([a, b], now, length, needed);
-        pair.axes.note(is_clear);
-        if is_clear {
-            return Ok(true);
+        let until = apart_along_axis_until([a, b], window, needed);
+        pair.axes.note(until > now);
+        if until > now {
+            return Ok(until);
         }
     }
     // Worth the distance where it will do, or where no direction is known.
     let will_do = pair.measured == Some(now) && pair.apart - approach([a, b]) * length > needed;
     if !(will_do || pair.normal.is_none()) {
-        return Ok(false);
+        return Ok(now);
     }
     let poses = [a, b].map(|body| body.pose_at(now));
     let Some(found) = distance_of([a, b], poses, f64::INFINITY, &mut pair.cache)? else {
-        return Ok(false);
+        return Ok(now);
     };
     let known = Clearance { poses, distance: found.lower };
     (pair.clearance, pair.normal) = (Some(known), Some(found.normal));
-    Ok(known.bound([a, b], now, length) > needed || spins.into_iter().any(|spin| along(found.normal, spin)))
+    let is_clear =
+        known.bound([a, b], now, length) > needed || spins.into_iter().any(|spin| along(found.normal, spin));
+    Ok(if is_clear { window.end() } else { now })
 }
 
 /// The distance of two bodies in these poses; `None`: it is more than the cutoff.

@@ -2,7 +2,7 @@
 
 use crate::body::{Body, BodyId, Damping, Groups, Kind, Mass, Presence};
 use crate::faces::Faces;
-use crate::hollow::cavity;
+use crate::hollow::{bores, cavity};
 use crate::momenta::Momenta;
 use crate::turning::{Pull, extreme_eigenvalues};
 use crate::velocity::Velocity;
@@ -12,6 +12,9 @@ use d2m_interval::Interval;
 use d2m_motion::{ConstantTwist, CoveredMotion, Pose, RigidMotion};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
+
+/// How far the axes of a body are followed, of how far it reaches.
+pub(crate) const AXES_REACH: f64 = 1.0625;
 
 /// No momentum, angular momentum or velocity of a body may exceed this: their products are still numbers.
 pub(crate) const LARGEST: f64 = 1e100;
@@ -78,6 +81,8 @@ pub(crate) struct RigidBody {
     pub(crate) rounding: f64,
     /// No point of its mesh is nearer to the center; zero if the center does not lie in a cavity.
     pub(crate) cavity: f64,
+    /// Nor to the lines through that along the axes of the mesh, as far as [`AXES_REACH`] says.
+    pub(crate) bores: [f64; 3],
     pub(crate) damping: Damping,
     pub(crate) groups: Groups,
     /// Mesh axes.
@@ -219,6 +224,7 @@ impl RigidBody {
             radius,
             rounding: body.radius,
             cavity: cavity(&body.tree, center),
+            bores: bores(&body.tree, center, AXES_REACH * radius),
             damping: body.damping,
             groups: body.groups,
             surface_velocity: body.surface_velocity,
