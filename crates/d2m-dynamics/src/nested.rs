@@ -19,6 +19,9 @@
 //! distance ≥ min(m, c − r),      r = max (|p × n| + α |p|)
 //! ```
 //!
+//! In a part of the flight the axis turns by that part of α, so where the whole flight shows nothing halves, quarters and eighths are tried,
+//! from its begin on, and a query has what is left.
+//!
 //! A body that turns, too, lies within some distance of a part of its own axis, and a line with that radius, and with what that axis
 //! turns, stands for it. Where the outer body does not turn, the distance from it of that part at the start, less what both move, is a bound.
 
