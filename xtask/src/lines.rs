@@ -4,17 +4,50 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// Files of capabilities that came after the count of 40 178 lines, relative to the root.
+const CAPABILITIES: &str = "xtask/capabilities.toml";
+
 #[derive(clap::Args)]
 pub(crate) struct Options {
     /// Folder of a checkout; this one by default.
     folder: Option<PathBuf>,
+    /// A line for each capability of xtask/capabilities.toml and one for the rest, instead of one a crate.
+    #[arg(long)]
+    capabilities: bool,
 }
 
-/// Prints a line for each folder that holds a crate, and the sum.
+/// Prints a line for each folder that holds a crate, or for each capability, and the sum.
 pub(crate) fn run(options: &Options) -> TaskResult {
     let root = options.folder.clone().unwrap_or_else(workspace_root);
+    let files = counted(&root)?;
+    let capabilities = if options.capabilities {
+        toml::from_str(&fs::read_to_string(root.join(CAPABILITIES))?)?
+    } else {
+        BTreeMap::new()
+    };
+    let places = by_place(&capabilities, |path| root.join(path).exists())?;
+    let group = |path: &Path, package: &str| -> String {
+        if !options.capabilities {
+            return package.to_owned();
+        }
+        let of = places.iter().find(|(place, _)| path.starts_with(place));
+        of.map_or("the rest", |(_, name)| name).to_owned()
+    };
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
-    let mut open = vec![root.clone()];
+    for (path, (package, lines)) in &files {
+        *counts.entry(group(path, package)).or_default() += lines;
+    }
+    for (name, lines) in &counts {
+        println!("{lines:>6}  {name}");
+    }
+    println!("{:>6}  in all", counts.values().sum::<usize>());
+    Ok(())
+}
+
+/// Every file of product code below a folder, with its crate and its lines.
+fn counted(root: &Path) -> Result<BTreeMap<PathBuf, (String, usize)>, Box<dyn std::error::Error>> {
+    let mut files = BTreeMap::new();
+    let mut open = vec![root.to_path_buf()];
     while let Some(folder) = open.pop() {
         for entry in fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))? {
             let path = entry?.path();
@@ -23,16 +56,35 @@ pub(crate) fn run(options: &Options) -> TaskResult {
                 if !name.starts_with('.') && name != "target" {
                     open.push(path);
                 }
-            } else if let Some(package) = product(path.strip_prefix(&root)?) {
-                *counts.entry(package).or_default() += count(&fs::read_to_string(&path)?);
+                continue;
+            }
+            let inside = path.strip_prefix(root)?;
+            if let Some(package) = product(inside) {
+                files.insert(inside.to_path_buf(), (package, count(&fs::read_to_string(&path)?)));
             }
         }
     }
-    for (package, lines) in &counts {
-        println!("{lines:>6}  {package}");
+    Ok(files)
+}
+
+/// The capability of each file and folder; each must be there, and none below another.
+fn by_place(
+    capabilities: &BTreeMap<String, Vec<PathBuf>>,
+    is_there: impl Fn(&Path) -> bool,
+) -> Result<BTreeMap<&Path, &str>, String> {
+    let mut places: BTreeMap<&Path, &str> = BTreeMap::new();
+    for (name, paths) in capabilities {
+        for path in paths {
+            if !is_there(path) {
+                return Err(format!("{CAPABILITIES}: {} is not there", path.display()));
+            }
+            if places.keys().any(|other| other.starts_with(path) || path.starts_with(other)) {
+                return Err(format!("{CAPABILITIES}: {} counts twice", path.display()));
+            }
+            places.insert(path, name);
+        }
     }
-    println!("{:>6}  in all", counts.values().sum::<usize>());
-    Ok(())
+    Ok(places)
 }
 
 /// The folder of the crate, if the file is a source of a published one and holds no tests only.
@@ -68,5 +120,22 @@ mod tests {
         assert_eq!(package("crates/d2m-x/src/a/tests.rs"), None);
         assert_eq!(package("crates/d2m-x/tests/a.rs"), None);
         assert_eq!(package("crates/d2m-testing/src/a.rs"), None);
+    }
+
+    #[test]
+    fn each_file_of_the_table_is_there() {
+        run(&Options { folder: None, capabilities: true }).unwrap();
+    }
+
+    #[test]
+    fn a_capability_is_there_and_counts_once() {
+        let of = |paths: &[&str]| {
+            let capabilities =
+                BTreeMap::from([("a".to_owned(), paths.iter().map(PathBuf::from).collect::<Vec<_>>())]);
+            by_place(&capabilities, |path| path.starts_with("crates")).map(|places| places.len())
+        };
+        assert_eq!(of(&["crates/a/src/b", "crates/a/src/b.rs"]), Ok(2));
+        assert!(of(&["gone/a.rs"]).is_err());
+        assert!(of(&["crates/a", "crates/a/src/b.rs"]).is_err());
     }
 }
