@@ -174,6 +174,21 @@ impl MeshTree {
     }
 }
 
+/// In a serde format a tree is its bytes, one number each: no library rounds them, and reading checks every promise again.
+#[cfg(feature = "serde")]
+impl serde::Serialize for MeshTree {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.to_bytes().serialize(serializer)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for MeshTree {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::try_from_bytes(&Vec::<u8>::deserialize(deserializer)?).map_err(serde::de::Error::custom)
+    }
+}
+
 fn u64_at_end(bytes: &[u8]) -> u64 {
     bytes.last_chunk().map_or(0, |last| u64::from_le_bytes(*last))
 }

@@ -16,8 +16,6 @@ mod plan;
 mod principal;
 mod refine;
 mod refit;
-#[cfg(feature = "serde")]
-mod serde_form;
 mod siblings;
 pub(crate) mod slabs;
 mod split;

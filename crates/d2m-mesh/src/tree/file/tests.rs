@@ -31,6 +31,20 @@ fn a_tree_comes_back_bit_for_bit() {
     }
 }
 
+#[cfg(feature = "serde")]
+#[test]
+fn in_a_serde_format_a_tree_is_its_bytes() {
+    let tree = MeshTree::new(torus(30, 12, 0.01, |p| p));
+    let text = serde_json::to_string(&tree).unwrap();
+    assert_eq!(serde_json::from_str::<Vec<u8>>(&text).unwrap(), tree.to_bytes());
+    let back: MeshTree = serde_json::from_str(&text).unwrap();
+    assert_eq!(bits(&back), bits(&tree));
+    let mut bytes = tree.to_bytes();
+    bytes[HEADER] ^= 1;
+    let refused = serde_json::from_str::<MeshTree>(&serde_json::to_string(&bytes).unwrap()).unwrap_err();
+    assert!(refused.to_string().contains("damaged"), "{refused}");
+}
+
 /// The form is a promise to files that exist: a change of it needs another version.
 #[test]
 fn the_form_of_the_bytes_is_as_documented() {
