@@ -56,7 +56,6 @@ mod neighbors;
 mod nested;
 mod options;
 mod pairs;
-mod parallel;
 mod pull;
 mod pushed;
 mod rebuilt;

@@ -47,7 +47,7 @@ mod mesh;
 mod meter;
 mod nearest_point;
 pub mod node;
-mod parallel;
+pub mod parallel;
 mod posed;
 mod resting;
 mod solid;

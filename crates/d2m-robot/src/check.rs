@@ -7,6 +7,7 @@ use crate::part::Owner;
 use crate::scene::RobotScene;
 use crate::{RobotError, Trajectory};
 use d2m_bvh::Window;
+use d2m_mesh::parallel::map_in_order;
 use d2m_motion::{Arm, JointPoints, JointValue};
 use d2m_world::{BodyId, FirstContact, PlannedMotion, Threads, WorldError};
 use std::sync::Arc;
@@ -277,16 +278,10 @@ impl EdgeChecker<'_> {
         &self,
         edges: impl IntoIterator<Item = (&'e [f64], &'e [f64])>,
     ) -> Result<Vec<PathAnswer>, RobotError> {
-        let edges: Vec<_> = edges.into_iter().collect();
-        let check = |(index, &(from, to)): (usize, &(&[f64], &[f64]))| {
+        let edges: Vec<_> = edges.into_iter().enumerate().collect();
+        let check = |&(index, (from, to)): &(usize, (&[f64], &[f64]))| {
             self.check(from, to).map_err(|error| RobotError::path(format!("edge {index}"), error.to_string()))
         };
-        #[cfg(feature = "rayon")]
-        {
-            use rayon::prelude::*;
-            edges.par_iter().enumerate().map(check).collect()
-        }
-        #[cfg(not(feature = "rayon"))]
-        edges.iter().enumerate().map(check).collect()
+        map_in_order(&edges, 1, check).into_iter().collect()
     }
 }

@@ -28,11 +28,11 @@
 #![forbid(unsafe_code)]
 
 mod aabb;
+mod batches;
 mod body;
 mod box_tree;
 mod moving_sphere;
 mod nearest;
-mod parallel;
 mod swept_bounds;
 mod world;
 

@@ -1,7 +1,7 @@
 //! Which of many pairs comes nearest, and which come within a distance.
 
 use crate::Aabb;
-use crate::parallel::{BOXES, PAIRS, map_in_order};
+use crate::batches::{BOXES, PAIRS};
 use crate::swept_bounds::CoveredBody;
 use d2m_bvh::{
     Clearance, ClearanceOptions, ClearanceStatus, DistanceOptions, Meter, Moving, Posed, QueryError, Solid,
@@ -68,6 +68,7 @@ pub struct PairDistance {
 ///
 /// ```
 /// use d2m_bvh::{ClearanceOptions, MeshTree, Moving, Window};
+use d2m_mesh::parallel::map_in_order;
 /// use d2m_motion::{ConstantTwist, Keyframes, Pose, Span};
 /// use d2m_world::PairsOfBodies;
 /// let cube = MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?);

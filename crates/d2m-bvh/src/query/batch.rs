@@ -2,6 +2,7 @@
 
 use super::time_of_contact::time_of_contact;
 use crate::{Moving, QueryError, QueryOptions, TimeOfContact, Window};
+use d2m_mesh::parallel::map_in_order;
 
 /// [`time_of_contact`] of many pairs of bodies, in order. On all threads of the current rayon pool with the feature
 /// `rayon`; each query runs on one thread, so the answers have the same bits at any number of threads (but for a
@@ -34,11 +35,5 @@ pub fn time_of_contact_batch(
         }
         time_of_contact(a, b, window, options)
     };
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::*;
-        pairs.par_iter().map(one).collect()
-    }
-    #[cfg(not(feature = "rayon"))]
-    pairs.iter().map(one).collect()
+    map_in_order(pairs, 1, one)
 }

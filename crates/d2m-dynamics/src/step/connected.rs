@@ -1,12 +1,13 @@
 //! Bodies that contacts connect.
 
-use super::{Key, Occasion, Step};
+use super::{FEW_ITEMS, Key, Occasion, Step};
+use crate::StepError;
 use crate::contact::ContactPoint;
 use crate::joined::Ahead;
 use crate::pairs::{AROUND, Measured, Pair, measure};
 use crate::rigid_body::RigidBody;
-use crate::{StepError, parallel};
 use d2m_bvh::QueryError;
+use d2m_mesh::parallel::map_owned;
 
 /// And those within this many times the way that two bodies come closer in what is left of the step.
 const APPROACH: f64 = 2.0;
@@ -179,7 +180,7 @@ impl Step<'_> {
                 Some(_) => known.push(key),
             }
         }
-        let mut found = parallel::map(unknown, |key| {
+        let mut found = map_owned(unknown, FEW_ITEMS, |key| {
             let (gap, reach) =
                 sim.pairs.get(&key).map_or((sim.options.gap, 1.0), |pair| (pair.gap, pair.reach));
             // What is further apart than the present motion leads needs no row; if forces lead there all the same, the

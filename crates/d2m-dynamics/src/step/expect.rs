@@ -2,11 +2,12 @@
 
 use super::event::{Cause, Event};
 use super::resolve::LEEWAY;
-use super::{Key, Occasion, Step};
+use super::{FEW_ITEMS, Key, Occasion, Step};
+use crate::StepError;
 use crate::contact::ContactPoint;
 use crate::pairs::{AROUND, measure};
 use crate::rigid_body::RigidBody;
-use crate::{StepError, parallel};
+use d2m_mesh::parallel::map_owned;
 use std::collections::BTreeMap;
 
 /// Solutions from one instant, each with the contacts that the flights of the one before led to: so many in any case, and four times as many
@@ -121,7 +122,7 @@ impl Step<'_> {
     fn measure_expected(&mut self, events: Vec<Event>, time: f64) -> Vec<usize> {
         let sim = &*self.sim;
         let (most, end) = (self.margin, self.end);
-        let found = parallel::map(events, |event| {
+        let found = map_owned(events, FEW_ITEMS, |event| {
             let key = (event.bodies[0], event.bodies[1]);
             let [a, b] = event.bodies.map(|i| &sim.bodies[i]);
             let gap = sim.pairs.get(&key).map_or(sim.options.gap, |pair| pair.gap);

@@ -1,15 +1,16 @@
 //! When flights end.
 
 use super::event::{Cause, Event};
-use super::{Key, Step};
+use super::{FEW_ITEMS, Key, Step};
+use crate::StepError;
 use crate::clearance::are_spheres_apart;
 #[cfg(feature = "audit")]
 use crate::concluded::conclude;
 use crate::pairs::{Outcome, Pair, fly};
-use crate::{StepError, parallel};
 use d2m_bvh::Window;
 #[cfg(feature = "audit")]
 use d2m_bvh::audit::Place;
+use d2m_mesh::parallel::map_owned;
 use glam::DVec3;
 use std::cmp::Reverse;
 
@@ -49,7 +50,7 @@ impl Step<'_> {
             .collect();
         self.report.queries += jobs.len() as u64;
         let (bodies, node_tests) = (&self.sim.bodies, self.sim.options.node_tests);
-        let answers = parallel::map(jobs, |(key, mut pair)| {
+        let answers = map_owned(jobs, FEW_ITEMS, |(key, mut pair)| {
             let (a, b) = (&bodies[key.0], &bodies[key.1]);
             let until = end.min(a.horizon).min(b.horizon);
             let answer =

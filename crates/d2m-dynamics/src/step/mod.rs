@@ -19,6 +19,9 @@ use plan::Replans;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
+/// Pairs, events or islands up to which threads cost more than they save.
+const FEW_ITEMS: usize = 7;
+
 /// Events of one pair at one and the same time, after which it is held.
 const MOST_AT_ONCE: u32 = 8;
 

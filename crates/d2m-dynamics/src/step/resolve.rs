@@ -1,13 +1,14 @@
 //! Velocities of the flights that begin at an event.
 
 use super::connected::Group;
-use super::{Occasion, Step};
+use super::{FEW_ITEMS, Occasion, Step};
 use crate::attempt::Clock;
 use crate::contact::{Company, ContactPoint};
 use crate::group::{CROWD, Solved, islands, solve};
 use crate::rigid_body::{RigidBody, Splits};
 use crate::velocity::Velocity;
-use crate::{ContactImpulse, StepError, parallel};
+use crate::{ContactImpulse, StepError};
+use d2m_mesh::parallel::map_owned;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -164,7 +165,7 @@ impl Step<'_> {
             (island, part)
         });
         let islands: Vec<_> = islands.collect();
-        parallel::map(islands, |(island, part)| {
+        map_owned(islands, FEW_ITEMS, |(island, part)| {
             part.unwrap_or_else(|| solve(bodies, &island, clock, options, joints, company))
         })
     }

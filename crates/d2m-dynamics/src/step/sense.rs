@@ -1,12 +1,13 @@
 //! What sensors find.
 
-use super::Step;
+use super::{FEW_ITEMS, Step};
+use crate::StepError;
 use crate::clearance::are_spheres_apart;
 use crate::rigid_body::{RigidBody, Role};
-use crate::{StepError, parallel};
 use d2m_bvh::{
     Budget, ContactSpan, QueryError, QueryOptions, SpanStatus, Window, contact_spans, time_of_contact,
 };
+use d2m_mesh::parallel::map_owned;
 
 impl Step<'_> {
     /// Which bodies sensors meet on the flights that all have now, until a time to which they fly: outside of what is reported each pair is
@@ -24,7 +25,7 @@ impl Step<'_> {
             return Ok(());
         }
         let node_tests = sim.options.node_tests;
-        let found = parallel::map(pairs, |pair| {
+        let found = map_owned(pairs, FEW_ITEMS, |pair| {
             (pair, spans(&sim.bodies[pair.0], &sim.bodies[pair.1], window, node_tests))
         });
         for (pair, spans) in found {

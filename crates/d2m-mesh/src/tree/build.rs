@@ -11,7 +11,7 @@ use super::plan::{Cut, NodeCounts, Plan};
 use super::split::{PartAxes, Splitter};
 use super::surface::{Extent, Surface};
 use crate::TriMesh;
-use crate::parallel::{both, map_of_many};
+use crate::parallel::{MANY, both, map_in_order};
 use core::sync::atomic::{AtomicUsize, Ordering};
 
 /// Triangles that a tree can number.
@@ -72,7 +72,7 @@ pub(super) fn build(mesh: &TriMesh, progress: Option<Progress<'_>>) -> Built {
     let surface = Surface::with_sums(mesh, &extent);
     let counts = NodeCounts::new(total);
     let places = vec![(); 1 + counts.of(total)];
-    let mut nodes = map_of_many(&places, |()| WideNode::empty([0.0; 3], 0));
+    let mut nodes = map_in_order(&places, MANY, |()| WideNode::empty([0.0; 3], 0));
     let mut order: Vec<u32> = (0..total as u32).collect();
     let mut splitter = Splitter::default();
     splitter.take(&surface, order.iter().step_by(total.div_ceil(TAKEN)));

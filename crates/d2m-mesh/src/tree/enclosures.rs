@@ -125,7 +125,7 @@ impl Enclosures<'_> {
             return (0..used).try_for_each(|lane| self.check_lane(index, lane, taken));
         }
         let lanes: Vec<usize> = (0..used).collect();
-        let all = map_in_order(&lanes, |&lane| {
+        let all = map_in_order(&lanes, 1, |&lane| {
             let mut taken = Vec::new();
             self.check_lane(index, lane, &mut taken).map(|()| taken)
         });

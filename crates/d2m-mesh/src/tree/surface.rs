@@ -4,7 +4,7 @@ use super::node::OrientedBox;
 use super::slabs::EdgeReach;
 use crate::TriMesh;
 use crate::margin::{UNIT_F64, round_up};
-use crate::parallel::map_of_many;
+use crate::parallel::{MANY, map_in_order};
 use d2m_lanes::three::{dot, minus};
 use d2m_lanes::{power_of_two, power_of_two_above};
 use glam::DVec3;
@@ -88,7 +88,7 @@ pub(super) struct Surface<'a> {
 
 impl<'a> Surface<'a> {
     pub(super) fn new(mesh: &'a TriMesh, extent: &Extent) -> Self {
-        let points = map_of_many(mesh.vertices(), |&p| extent.local(p));
+        let points = map_in_order(mesh.vertices(), MANY, |&p| extent.local(p));
         Self { points, triangles: mesh.triangles(), sums: Vec::new() }
     }
 
@@ -96,7 +96,7 @@ impl<'a> Surface<'a> {
     pub(super) fn with_sums(mesh: &'a TriMesh, extent: &Extent) -> Self {
         let mut surface = Self::new(mesh, extent);
         let points = &surface.points;
-        surface.sums = map_of_many(mesh.triangles(), |&[i, j, k]| {
+        surface.sums = map_in_order(mesh.triangles(), MANY, |&[i, j, k]| {
             let [a, b, c] = [points[i as usize], points[j as usize], points[k as usize]];
             [(a[0] + b[0] + c[0]) as f32, (a[1] + b[1] + c[1]) as f32, (a[2] + b[2] + c[2]) as f32]
         });

@@ -57,7 +57,7 @@ impl ClaimedTree<'_> {
 
     fn check_shapes(&self) -> Result<(), TreeError> {
         let chunks: Vec<_> = self.nodes.chunks(NODES).enumerate().collect();
-        let checked = map_in_order(&chunks, |(chunk, nodes)| {
+        let checked = map_in_order(&chunks, 1, |(chunk, nodes)| {
             nodes.iter().enumerate().try_for_each(|(k, node)| check_node(chunk * NODES + k, node))
         });
         checked.into_iter().collect()

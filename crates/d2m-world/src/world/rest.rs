@@ -2,11 +2,12 @@
 
 use super::schedule::Uncovered;
 use super::{PairProximities, World, WorldError};
+use crate::batches::{BOXES, PAIRS};
 use crate::box_tree::BoxTree;
-use crate::parallel::{BOXES, PAIRS, map_in_order};
 use crate::swept_bounds::CoveredBody;
 use crate::{Aabb, Body};
 use d2m_bvh::{Posed, Proximity, ProximityOptions, QueryError, proximities_with};
+use d2m_mesh::parallel::map_in_order;
 
 impl World {
     /// The locally closest features of all pairs at one time, ascending by places: [`d2m_bvh::proximities_with`] of every pair

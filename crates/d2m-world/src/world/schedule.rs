@@ -8,12 +8,13 @@ use super::pair_queue::PairQueue;
 use super::pair_state::Entry;
 use super::slots::Slots;
 use crate::Aabb;
+use crate::batches::BOXES;
 use crate::box_tree::{BoxTree, IndexPair};
 use crate::moving_sphere::sphere_about;
-use crate::parallel::{BOXES, map_in_order};
 use crate::swept_bounds::{CoveredBody, SliceRange, Slicing, Sweep, SweptSlices};
 use d2m_bvh::Window;
 use d2m_feature::{FirstMeeting, MovingSphere};
+use d2m_mesh::parallel::map_in_order;
 use d2m_motion::OutsideDomain;
 
 /// Bodies that change one by one look for their pairs; from this part of all on all pairs are found anew.

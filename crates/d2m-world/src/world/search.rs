@@ -6,14 +6,15 @@
 use super::pair_state::{Entry, Known, PairState};
 use super::schedule::{MeetingSpan, Prepared, Rules};
 use super::{FirstContact, PairContact, Threads, World, WorldError};
+use crate::batches::PAIRS;
 use crate::box_tree::IndexPair;
-use crate::parallel::{PAIRS, map_in_order};
 #[cfg(feature = "audit")]
 use d2m_bvh::audit::Place;
 use d2m_bvh::{
     Contact, Meter, PairCache, QueryError, QueryOptions, Start, StartState, TimeBracket, TimeOfContact,
     Window, time_of_contact_with,
 };
+use d2m_mesh::parallel::map_in_order;
 use std::collections::HashSet;
 
 /// Pairs of the first round; each round is twice as long as the one before, so what is searched beyond the first contact

@@ -23,6 +23,7 @@ use crate::{
     Window,
 };
 use d2m_feature::{FeaturePair, TriangleFeature};
+use d2m_mesh::parallel::map_in_order;
 use sample::{Sample, Sampler, closer};
 use way::{Way, WayEnd};
 
@@ -110,13 +111,7 @@ pub fn clearance_batch(
     options: &ClearanceOptions,
 ) -> Vec<Result<Clearance, QueryError>> {
     let one = |&(a, b): &(Moving<'_>, Moving<'_>)| clearance(a, b, window, options);
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::*;
-        pairs.par_iter().map(one).collect()
-    }
-    #[cfg(not(feature = "rayon"))]
-    pairs.iter().map(one).collect()
+    map_in_order(pairs, 1, one)
 }
 
 /// The hard cap on one search holds for all of them together.

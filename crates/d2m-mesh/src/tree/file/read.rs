@@ -42,7 +42,7 @@ impl TreeParts {
         }
         let (mesh, nodes) = both(
             || read_mesh(vertices, triangles),
-            || map_in_order(&origins.starts, |&start| read_node(&rest[start..])),
+            || map_in_order(&origins.starts, 1, |&start| read_node(&rest[start..])),
         );
         Ok(Self { mesh: mesh?, nodes, center: DVec3::new(x, y, z), radius })
     }
