@@ -215,14 +215,6 @@ impl ConstantTwist {
             ..*self
         }
     }
-
-    /// The same motion seen from a world frame whose origin is at `origin` (one rounding a component).
-    ///
-    /// # Panics
-    /// If the difference is not finite.
-    pub fn relative_to(&self, origin: DVec3) -> Self {
-        self.with_position(self.position - origin)
-    }
 }
 
 /// Radians either way over which a rotation is enclosed about its middle: from there on interval arithmetic is tighter.

@@ -76,7 +76,7 @@ pub struct BodyTwist {
 /// let spin = ConstantTwist::REST.with_angular_velocity(DVec3::Z * 2.0);
 /// let twist = spin.enclose_twist(Interval::UNIT);
 /// // A point at (1, 0, 0) from the reference point moves along y by 2 a unit of time.
-/// assert!(twist.enclose_velocity_of(IntervalVec3::point(DVec3::X)).y.contains(2.0));
+/// assert!((twist.linear + twist.angular.cross(IntervalVec3::point(DVec3::X))).y.contains(2.0));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IntervalTwist {
@@ -87,11 +87,6 @@ pub struct IntervalTwist {
 }
 
 impl IntervalTwist {
-    /// Encloses the velocity of the point at `arm` (world axes) from the reference point.
-    pub fn enclose_velocity_of(&self, arm: IntervalVec3) -> IntervalVec3 {
-        self.linear + self.angular.cross(arm)
-    }
-
     /// A set that contains this one and another.
     #[must_use]
     pub fn hull(self, other: Self) -> Self {

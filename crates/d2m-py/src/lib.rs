@@ -19,6 +19,7 @@ mod resting;
 mod robot;
 mod robot_edges;
 mod robot_input;
+mod robot_questions;
 mod robot_recipe;
 mod segment;
 mod simulation;
@@ -29,6 +30,7 @@ mod trajectory;
 mod verify;
 mod witness;
 mod world;
+mod world_answer;
 
 use pyo3::prelude::*;
 
@@ -74,5 +76,7 @@ mod _d2m {
     #[pymodule_export]
     use crate::witness::Witness;
     #[pymodule_export]
-    use crate::world::{BodyId, FirstContact, PairContact, World};
+    use crate::world::World;
+    #[pymodule_export]
+    use crate::world_answer::{BodyId, FirstContact, PairContact};
 }

@@ -1,10 +1,12 @@
 //! Keywords of queries.
 
 use crate::fault::{Fault, OrRaise, Value};
+use crate::mesh::tree_argument;
 use d2m::bvh::{Budget, MeshTree, Mode, QueryOptions, Solid, Start, Window};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// What most queries take.
@@ -86,7 +88,7 @@ pub(crate) fn budget(node_tests: Option<u64>, time_limit: Option<f64>) -> Result
 
 /// What the two bodies are: by default solid where their meshes are watertight.
 pub(crate) fn solids(any: Option<&Bound<'_, PyAny>>, trees: [&MeshTree; 2]) -> PyResult<[Solid; 2]> {
-    let [a, b] = trees.map(default_solid);
+    let [a, b] = trees.map(MeshTree::usual_solid);
     let Some(any) = any else { return Ok([a, b]) };
     if let Ok(pair) = any.cast::<PyTuple>() {
         if pair.len() != 2 {
@@ -97,13 +99,19 @@ pub(crate) fn solids(any: Option<&Bound<'_, PyAny>>, trees: [&MeshTree; 2]) -> P
     Ok([solid(any, a)?, solid(any, b)?])
 }
 
-/// Solid if the mesh is watertight.
-pub(crate) fn default_solid(tree: &MeshTree) -> Solid {
-    if tree.is_watertight() { Solid::Filled } else { Solid::Surface }
+/// The tree of a body, and whether it is solid: by default if its mesh is watertight.
+pub(crate) fn body_argument(
+    tree: &Bound<'_, PyAny>,
+    given: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(Arc<MeshTree>, Solid)> {
+    let tree = tree_argument(tree)?;
+    let usual = tree.usual_solid();
+    let solid = given.map_or(Ok(usual), |any| solid(any, usual))?;
+    Ok((tree, solid))
 }
 
 /// `True` or "filled", `False` or "surface", or `None` for what is usual.
-pub(crate) fn solid(any: &Bound<'_, PyAny>, usual: Solid) -> PyResult<Solid> {
+fn solid(any: &Bound<'_, PyAny>, usual: Solid) -> PyResult<Solid> {
     if any.is_none() {
         return Ok(usual);
     }

@@ -2,9 +2,9 @@
 
 use crate::arrays::{Doubles, rows, small};
 use crate::fault::{Fault, OrRaise, Value};
-use crate::mesh::tree_argument;
+
 use crate::motion::motion_argument;
-use crate::options::{default_solid, solid};
+use crate::options::body_argument;
 use crate::pose::{Pose, pose_argument, vec3_or_zero, wxyz};
 use crate::segment::{Segment, TouchEvent};
 use crate::supervise::{Watch, pool, supervised};
@@ -204,9 +204,7 @@ impl Simulation {
         surface_velocity: Option<&Bound<'_, PyAny>>,
         checked: bool,
     ) -> PyResult<usize> {
-        let tree = tree_argument(tree)?;
-        let usual = default_solid(&tree);
-        let solid = solid.map_or(Ok(usual), |any| self::solid(any, usual))?;
+        let (tree, solid) = body_argument(tree, solid)?;
         let kind = kind_argument(kind, motion, 2.0 * tree.radius())?;
         let pose = pose_argument(pose, "pose")?;
         let mass = mass_of(density, mass, center, inertia)?;

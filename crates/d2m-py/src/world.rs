@@ -2,11 +2,12 @@
 
 use crate::answer;
 use crate::fault::{Fault, OrRaise, Value};
-use crate::mesh::tree_argument;
+
 use crate::motion::motion_argument;
-use crate::options::{QueryKeywords, default_solid, solid, window};
+use crate::options::{QueryKeywords, body_argument, window};
 use crate::resting::proximity_array;
 use crate::supervise::{Supervision, Watch, pool, supervised};
+use crate::world_answer::{BodyId, FirstContact, PairContact};
 use d2m::{Body, Group, PlannedMotion, ProximityOptions, TimeOfContact};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -15,129 +16,6 @@ use rayon::ThreadPool;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-/// Names a body of one `World`: equal only to itself, never reused.
-///
-/// >>> import d2m_ccd
-/// >>> world = d2m_ccd.World()
-/// >>> world.add("shape:box", name="table")
-/// BodyId(0, 'table')
-#[pyclass(frozen, eq, hash, module = "d2m_ccd", from_py_object)]
-#[derive(Clone)]
-pub(crate) struct BodyId {
-    world: u64,
-    id: d2m::BodyId,
-    name: Option<String>,
-}
-
-impl PartialEq for BodyId {
-    fn eq(&self, other: &Self) -> bool {
-        (self.world, self.id) == (other.world, other.id)
-    }
-}
-
-impl std::hash::Hash for BodyId {
-    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
-        (self.world, self.id).hash(state);
-    }
-}
-
-#[pymethods]
-impl BodyId {
-    /// The place of the body. Without removals bodies are numbered in the order in which they were added, from 0.
-    #[getter]
-    const fn index(&self) -> usize {
-        self.id.index()
-    }
-
-    /// The name that the user gave it.
-    #[getter]
-    fn name(&self) -> Option<&str> {
-        self.name.as_deref()
-    }
-
-    fn __repr__(&self) -> String {
-        match &self.name {
-            Some(name) => format!("BodyId({}, '{name}')", self.id.index()),
-            None => format!("BodyId({})", self.id.index()),
-        }
-    }
-}
-
-/// Two bodies of a world and what is known of them: a `Contact`, or an `Undecided`.
-///
-/// >>> import d2m_ccd
-/// >>> world = d2m_ccd.World()
-/// >>> ids = [world.add("shape:box", {"x": [x, 0, 0], "v": [-x, 0, 0]}) for x in (0.0, 9.0)]
-/// >>> [(pair.a.index, pair.b.index, pair.answer.status) for pair in world.contacts()]
-/// [(0, 1, 'contact')]
-#[pyclass(frozen, get_all, module = "d2m_ccd")]
-pub(crate) struct PairContact {
-    /// The body with the smaller index.
-    a: BodyId,
-    /// The other body.
-    b: BodyId,
-    /// What is known of them.
-    answer: Py<PyAny>,
-}
-
-#[pymethods]
-impl PairContact {
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(format!(
-            "PairContact({}, {}, {})",
-            self.a.__repr__(),
-            self.b.__repr__(),
-            self.answer.bind(py).repr()?
-        ))
-    }
-}
-
-/// The first contact of a world.
-///
-/// `status` "separated": certified, no two bodies meet in the window. "contact": certified, none meet before `contact.time_lo`, and
-/// `a` and `b` do by `contact.time_hi`; `overlapping` are the other contacts whose brackets begin before this one's ends.
-/// "undecided": certified until `clear_until`. It has no truth value: ask for its status.
-///
-/// >>> import d2m_ccd
-/// >>> d2m_ccd.World().first_contact()
-/// FirstContact('separated')
-#[pyclass(frozen, get_all, module = "d2m_ccd")]
-pub(crate) struct FirstContact {
-    /// "separated", "contact" or "undecided".
-    status: &'static str,
-    /// The body with the smaller index, if there is a contact or an undecided pair.
-    a: Option<BodyId>,
-    /// The other body.
-    b: Option<BodyId>,
-    /// Their contact, or `None`.
-    contact: Option<Py<PyAny>>,
-    /// Contacts that may be as early, a list of `PairContact`.
-    overlapping: Vec<Py<PairContact>>,
-    /// Certified: no contact of any pair until here; infinite when separated.
-    clear_until: f64,
-}
-
-#[pymethods]
-impl FirstContact {
-    fn __bool__(&self) -> PyResult<bool> {
-        let message = "FirstContact has no truth value: compare its status with \"separated\"";
-        Err(pyo3::exceptions::PyTypeError::new_err(message))
-    }
-
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let pair = match (&self.a, &self.b) {
-            (Some(a), Some(b)) => format!(", {}, {}", a.__repr__(), b.__repr__()),
-            _ => String::new(),
-        };
-        let rest = match &self.contact {
-            Some(contact) => format!(", {}", contact.bind(py).repr()?),
-            None if self.status == "undecided" => format!(", clear_until={:?}", self.clear_until),
-            None => String::new(),
-        };
-        Ok(format!("FirstContact('{}'{pair}{rest})", self.status))
-    }
-}
 
 /// Many moving bodies: a broad phase over what they sweep, and certified queries for what is left.
 ///
@@ -303,9 +181,7 @@ impl World {
                 .found(radius)
                 .into());
         }
-        let tree = tree_argument(tree)?;
-        let usual = default_solid(&tree);
-        let solid = solid.map_or(Ok(usual), |any| self::solid(any, usual))?;
+        let (tree, solid) = body_argument(tree, solid)?;
         let motion = motion_argument(motion, "motion")?;
         motion.check_size(&tree).or_raise()?;
         let mut body = Body::with_shared(tree, motion.shared()).with_solid(solid).with_radius(radius);

@@ -92,7 +92,7 @@ impl<'a> ShapeReader<'a> {
             link: link.to_owned(),
             source,
         })?;
-        let solid = if shape.tree.is_watertight() { Solid::Filled } else { Solid::Surface };
+        let solid = shape.tree.usual_solid();
         Ok(LinkBody { tree: shape.tree, radius: shape.radius, solid, origin: *origin, mesh })
     }
 

@@ -273,14 +273,6 @@ impl Robot {
         &self.remarks
     }
 
-    /// How many collision bodies a link has.
-    ///
-    /// # Panics
-    /// An index that is no link.
-    pub fn body_count(&self, link: usize) -> usize {
-        self.links[link].bodies.len()
-    }
-
     /// Does a joint join these links directly?
     pub fn is_joined(&self, a: usize, b: usize) -> bool {
         self.joined.contains(&[a.min(b), a.max(b)])

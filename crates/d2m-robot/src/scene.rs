@@ -6,7 +6,7 @@ use crate::obstacle::{Attached, Obstacle};
 use crate::part::{MovingPair, Owner, Part};
 use crate::robot::Robot;
 use crate::{RobotError, Srdf};
-use d2m_bvh::{Budget, MeshTree, QueryOptions, Solid, Start, Window, time_of_contact};
+use d2m_bvh::{Budget, QueryOptions, Start, Window, time_of_contact};
 use d2m_motion::JointKind;
 use d2m_world::{Body, World};
 use std::sync::Arc;
@@ -139,7 +139,7 @@ impl RobotScene {
         let Obstacle { name, tree, motion, solid, radius, is_at_rest } = obstacle;
         self.check_name(&name)?;
         check_radius(&name, radius)?;
-        let solid = solid.unwrap_or_else(|| solid_of(&tree));
+        let solid = solid.unwrap_or_else(|| tree.usual_solid());
         let body = Body::with_shared(tree, motion).with_solid(solid).with_radius(radius);
         self.add(&name, Owner::Obstacle { is_at_rest }, body, |other| {
             !matches!(other.owner, Owner::Obstacle { .. })
@@ -182,7 +182,7 @@ impl RobotScene {
             name: name.clone(),
             reason: format!("it is attached to {carrier:?}, which is no link of the robot"),
         })?;
-        let solid = solid.unwrap_or_else(|| solid_of(&tree));
+        let solid = solid.unwrap_or_else(|| tree.usual_solid());
         let rest = self.robot.complete(vec![None; self.robot.joints.len()])?;
         let motion = self.robot.chains(&rest)?[link].and(frame.clone())?;
         let body = Body::new(tree, motion).with_solid(solid).with_radius(radius);
@@ -422,11 +422,6 @@ impl RobotScene {
             format!("{} has this name already", if is_link { "a link of the robot" } else { "another body" });
         Err(RobotError::Body { name: name.to_owned(), reason })
     }
-}
-
-/// A mesh that bounds a solid is one.
-fn solid_of(tree: &MeshTree) -> Solid {
-    if tree.is_watertight() { Solid::Filled } else { Solid::Surface }
 }
 
 /// Bodies that are far apart are never queried, so that no query would refuse these.

@@ -146,7 +146,11 @@ fn what_real_files_hold_is_read() {
     );
     let robot = read(&format!("\u{feff}<?xml version=\"1.0\"?>\n<!-- made by xacro -->\n{text}")).unwrap();
     assert_eq!(robot.joint_names(), ["j"]);
-    assert_eq!([0, 1, 2].map(|link| robot.body_count(link)), [1, 2, 0]);
+    let scene = RobotScene::new(Arc::new(robot), None, QueryOptions::default()).unwrap();
+    let point = |time: f64| TrajectoryPoint::new(time, vec![time]);
+    let path = Trajectory::new(vec!["j".into()], vec![point(0.0), point(1.0)]);
+    let bodies = scene.bodies_along(&path).unwrap();
+    assert_eq!((0..bodies.len()).map(|body| bodies.name(body)).collect::<Vec<_>>(), ["a", "b", "b"]);
     // Files of packages are looked for beside the robot.
     let folder = std::env::temp_dir().join(format!("d2m-robot-files-{}", std::process::id()));
     let meshes = folder.join("my_arm").join("meshes");

@@ -83,12 +83,12 @@ impl Options {
 
     /// What counts as a body: solids where the mesh bounds one, unless the caller wants otherwise.
     pub(crate) fn solid(&self, name: &str, tree: &MeshTree) -> Result<Solid, String> {
-        match (self.solid, tree.is_watertight()) {
-            (Some(true), false) => {
+        match (self.solid, tree.usual_solid()) {
+            (Some(true), Solid::Surface) => {
                 Err(format!("{name}: the mesh is not watertight, so it bounds no solid: use solid: false"))
             }
-            (Some(false), _) | (None, false) => Ok(Solid::Surface),
-            (_, true) => Ok(Solid::Filled),
+            (Some(false), _) => Ok(Solid::Surface),
+            (_, usual) => Ok(usual),
         }
     }
 

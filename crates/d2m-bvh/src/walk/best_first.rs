@@ -1,6 +1,6 @@
 //! Best first inside one sub-window.
 
-use super::effort::{self, BATCH, MEMORY_CHECK, ON_ITS_WAY};
+use super::effort::{self, BATCH, Level, MEMORY_CHECK, ON_ITS_WAY};
 use super::expansion::{KEY_SCALE, NodePairExpander};
 use super::parting::Parting;
 use super::queue::{Bucket, Item};
@@ -75,7 +75,7 @@ impl<'s> Search<'s> {
                 break;
             }
             self.scratch.counts.frames += 1;
-            if batches == 1 || least > effort::fresh_until(state.frame_key, state.parting.is_some()) {
+            if batches == 1 || least > Level::of(state.parting.as_ref()).fresh_until(state.frame_key) {
                 state.renew_frames::<L>(least);
             }
             if patience.is_due(batches, self.scratch.counts.triangle_looks) {
@@ -204,7 +204,10 @@ impl<'s> Search<'s> {
         self.scratch.counts.swept_pairs += skip.work;
         let work = self.work();
         let due = self.limits.sweep_from;
-        self.limits.sweep_from = effort::next_sweep(work, due, skip.clear_until.is_some());
+        self.limits.sweep_from = match skip.clear_until {
+            Some(_) => effort::sweep_after_success(work, due),
+            None => effort::sweep_after_failure(work),
+        };
         skip.clear_until
     }
 }

@@ -16,7 +16,7 @@
 //! | planes between crowds | 4096 pairs wait, or 1024 batches | twice as many, and as much other work as it took | `crowd` |
 //! | spans of time, divided | 64 sub-windows | 256 pairs in a span | `time_split` |
 //! | several threads | 1024 node tests | each round 4096 tests a thread | `parallel` |
-//! | all but the first five, when the level is grazed | 64 times later | – | [`patience`] |
+//! | all but the first five, when the level is grazed | 64 times later | – | [`Level::patience`] |
 //!
 //! What one mechanism does within itself stands with it: which directions a test tries ([`separating_axis`]), which planes part crowds (`crowd`), how
 //! long spans of any motion are (`general_motion/span_length`), of contact (`staying_walk`), and where clearances are sampled (`clearance`). Tests
@@ -44,9 +44,40 @@ const FRESH: u32 = 128;
 /// so that times grow by many powers of two, and each frame comes with a line between the closest triangles.
 const GRAZING_FRESH: u32 = 16;
 
-/// The key above which a frame at this key is renewed.
-pub(crate) const fn fresh_until(key: u32, grazing: bool) -> u32 {
-    key + key / if grazing { GRAZING_FRESH } else { FRESH }
+/// How the distance that a search proves compares with the least one.
+#[derive(Clone, Copy)]
+pub(crate) enum Level {
+    /// Nothing is known of that.
+    Usual,
+    /// They are close.
+    Grazed,
+}
+
+impl Level {
+    /// Grazed where triangles are known whose line parts most pairs.
+    pub(crate) const fn of<T>(parting: Option<&T>) -> Self {
+        match parting {
+            None => Self::Usual,
+            Some(_) => Self::Grazed,
+        }
+    }
+
+    /// The key above which a frame at this key is renewed.
+    pub(crate) const fn fresh_until(self, key: u32) -> u32 {
+        let part = match self {
+            Self::Usual => FRESH,
+            Self::Grazed => GRAZING_FRESH,
+        };
+        key + key / part
+    }
+
+    /// The factor of all that a search does before it examines swept volumes and crowds.
+    pub(crate) const fn patience(self) -> u64 {
+        match self {
+            Self::Usual => 1,
+            Self::Grazed => GRAZING_PATIENCE,
+        }
+    }
 }
 
 /// Tests of pairs of triangles of one search, and of one pair, that use bounds of second order; later ones use those of third
@@ -91,11 +122,6 @@ pub(crate) const fn followed_until(key: u32) -> u32 {
 /// hardly ever prove anything then.
 const GRAZING_PATIENCE: u64 = 64;
 
-/// The factor of all that a search does before it examines swept volumes and crowds.
-pub(crate) const fn patience(grazing: bool) -> u64 {
-    if grazing { GRAZING_PATIENCE } else { 1 }
-}
-
 /// Node tests, besides one for each [`TRIANGLES_A_TEST`] triangles, before swept volumes are compared for the first time:
 /// ordinary queries end before that, or are well on their way.
 const FIRST_SWEEP: u64 = 256;
@@ -133,9 +159,14 @@ pub(crate) const fn most_screw_pairs(work: u64) -> u64 {
     most_swept(work) / TESTS_A_SCREW_PAIR
 }
 
-/// The work at which swept volumes are compared again, after a comparison that was due at `due` and ended at `work`.
-pub(crate) const fn next_sweep(work: u64, due: u64, gained: bool) -> u64 {
-    if gained { work + due / 4 } else { 8 * work }
+/// The work at which swept volumes are compared again, after a comparison that was due at `due`, ended at `work` and proved something.
+pub(crate) const fn sweep_after_success(work: u64, due: u64) -> u64 {
+    work + due / 4
+}
+
+/// The same where it proved nothing.
+pub(crate) const fn sweep_after_failure(work: u64) -> u64 {
+    8 * work
 }
 
 /// As many pairs that wait are a crowd, and as many batches in one window make one: several times as many as in

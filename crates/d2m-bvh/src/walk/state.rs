@@ -1,7 +1,7 @@
 //! What a search knows: its limits, what it has found, where it is in a sub-window.
 
 use super::counts::SearchCounts;
-use super::effort;
+use super::effort::{self, Level};
 use super::expansion::{KeyRange, NodePairExpander};
 use super::scratch::Scratch;
 use crate::pair::boxes::node_scale::NodeScale;
@@ -139,7 +139,7 @@ impl<'s> Search<'s> {
         scratch.last_tested = [0, 0];
         // What an earlier query left belongs to other motions.
         scratch.found_in = None;
-        let patience = effort::patience(options.grazing.is_some());
+        let patience = Level::of(options.grazing.as_ref()).patience();
         let limits = Limits {
             mode: options.mode,
             most_tests: budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS),

@@ -49,14 +49,13 @@ impl SceneBody {
             .map_err(|error| Failure::at(format!("{place}, motion"), error))?;
         require_window(&format!("{place}, motion"), &motion, window)?;
         warn_of_turn(&format!("{place}, motion"), Travel::of(&motion, window));
-        let solid = match solid {
-            Some(true) if !tree.is_watertight() => {
+        let solid = match (solid, tree.usual_solid()) {
+            (Some(true), Solid::Surface) => {
                 let reason = format!("true, but the mesh {mesh} is not watertight and bounds no solid");
                 return Err(Failure::at(format!("{place}, solid"), reason));
             }
-            Some(false) => Solid::Surface,
-            None if !tree.is_watertight() => Solid::Surface,
-            Some(true) | None => Solid::Filled,
+            (Some(false), _) => Solid::Surface,
+            (_, usual) => usual,
         };
         Ok(Self { name, tree, motion, group, solid, radius })
     }

@@ -5,6 +5,7 @@ use super::surface::Extent;
 use crate::TriMesh;
 use crate::mesh::{Adjacency, Closedness};
 use crate::parallel::both_of_many;
+use crate::solid::Solid;
 use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -196,6 +197,19 @@ impl MeshTree {
     /// Does the surface close (each edge shared by an even number of triangles, as `Topology` counts them)?
     pub const fn is_watertight(&self) -> bool {
         self.watertight
+    }
+
+    /// What counts as the body where nobody says otherwise: it is filled if the surface closes.
+    ///
+    /// ```
+    /// use d2m_mesh::{MeshTree, Solid, TriMesh};
+    /// use glam::DVec3;
+    /// let sheet = TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]])?;
+    /// assert_eq!(MeshTree::new(sheet).usual_solid(), Solid::Surface);
+    /// # Ok::<(), d2m_mesh::MeshError>(())
+    /// ```
+    pub const fn usual_solid(&self) -> Solid {
+        if self.watertight { Solid::Filled } else { Solid::Surface }
     }
 
     /// One vertex of each connected part of the surface; equal positions connect.

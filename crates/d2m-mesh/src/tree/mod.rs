@@ -24,6 +24,7 @@ mod surface;
 mod tests;
 mod tree_error;
 mod validate;
+mod wide_boxes;
 
 pub use file::TreeFileError;
 pub use mesh_tree::{MeshTree, TreeId};

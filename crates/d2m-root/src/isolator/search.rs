@@ -234,6 +234,14 @@ enum Step {
     Answer(FirstRoot),
 }
 
+/// Of a piece whose middle is measured.
+enum Width {
+    /// What is near there is searched on from the left.
+    Wide,
+    /// As narrow as a bracket is to be.
+    Narrow,
+}
+
 /// What the measurement of a piece's middle leads to.
 enum Measured {
     Done(Step),
@@ -274,7 +282,7 @@ impl<T: PieceTest> Search<'_, T> {
         }
         let mut distance = None;
         if narrow || width > POOR * old_width {
-            match self.measure_middle(piece, narrow) {
+            match self.measure_middle(piece, if narrow { Width::Narrow } else { Width::Wide }) {
                 Measured::Done(step) => return step,
                 Measured::Within(bound) => distance = Some(bound),
             }
@@ -320,13 +328,13 @@ impl<T: PieceTest> Search<'_, T> {
 
     /// In the middle of a piece: contact to its left or there, or a part around it that is clear.
     #[inline(always)]
-    fn measure_middle(&mut self, piece: Piece, narrow: bool) -> Measured {
+    fn measure_middle(&mut self, piece: Piece, width: Width) -> Measured {
         let mid = piece.mid();
         self.evaluations += 1;
         let Measurement { distance, clear_lo, clear_hi } = self.test.measure(piece, mid);
         if distance <= self.tolerance {
             let bracket = Piece { hi: mid, ..piece };
-            if narrow {
+            if let Width::Narrow = width {
                 return Measured::Done(found(bracket, Evidence::WithinTolerance, distance));
             }
             self.seen = Some(Seen { time: mid, distance });

@@ -1,7 +1,8 @@
-use super::{HALF, Rows, Siblings, StoredAxes, all_axes, outward};
+use super::{Rows, Siblings, StoredAxes, all_axes};
 use crate::tree::fit::Moments;
 use crate::tree::frame::{DEVIATION_ERROR, MOST_DEVIATION, deviation};
 use crate::tree::node::{Below, OrientedBox, WIDTH, WideNode};
+use crate::tree::wide_boxes::{HALF, outward};
 use d2m_lanes::{Doubles, F64x4, InstructionSet, Lanes, Quad, Task, run_on};
 use d2m_testing::{Draw, KnuthRandom};
 use glam::DVec3;
