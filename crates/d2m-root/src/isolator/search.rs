@@ -235,6 +235,7 @@ enum Step {
 }
 
 /// Of a piece whose middle is measured.
+#[derive(Clone, Copy)]
 enum Width {
     /// What is near there is searched on from the left.
     Wide,
