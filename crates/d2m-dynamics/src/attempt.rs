@@ -4,10 +4,13 @@ use crate::SimulationOptions;
 use crate::contact::{
     Accuracy, Company, ContactPoint, NEAR, Present, Room, SolverBody, Span, Start, System, add, select,
 };
+use crate::ends::Ends;
+use crate::gained::{Gained, is_of_joints_alone};
 use crate::joined::{Ahead, Joined};
 use crate::momenta::Momenta;
 use crate::pull::{couples, pulls, work};
 use crate::rigid_body::{RigidBody, Splits};
+use crate::solved_body::{body_at, moves, still, world_inertia};
 use crate::taut::locked;
 use crate::turning::Pull;
 use crate::velocity::Velocity;
@@ -39,6 +42,8 @@ const MANY: usize = 20;
 const OFF_JOINT: f64 = 1e-2;
 /// The square of the angle by which an oscillation leads in a flight, from which on flights make more of it: where impulses act at their starts.
 const UNSTABLE: f64 = 4.0;
+/// The part of the energy that flights gain which flights of half the length may gain: one quarter is due.
+const LESS: f64 = 0.5;
 /// Halvings of such flights.
 const MOST_HALVINGS: u32 = 6;
 /// The part of the rate at which something closes in, and how much more than solutions leave anyway, from which on no velocities obey the law.
@@ -188,12 +193,23 @@ impl Problem<'_> {
         if let Some(stopped) = self.stopped(&tried, [now, end]) {
             return stopped;
         }
+        let is_of_joints = is_of_joints_alone(self.states, self.contacts);
+        let gained = |tried: &Attempt, end: f64| {
+            Gained::of(self.states, &tried.system, self.options, [now, end - now])
+        };
         for _ in 0..MOST_HALVINGS {
-            if tried.found.missed <= OFF_JOINT * self.speed() {
+            let is_met = tried.found.missed <= OFF_JOINT * self.speed();
+            let before = gained(&tried, end);
+            if is_met && !(is_of_joints && before.is_much()) {
                 break;
             }
-            end = now + 0.5 * (end - now);
-            tried = self.attempt(now, end, Room::Kept);
+            let half = now + 0.5 * (end - now);
+            let shorter = self.attempt(now, half, Room::Kept);
+            // What shorter flights gain as well comes from elsewhere.
+            if is_met && gained(&shorter, half).energy > LESS * before.energy {
+                break;
+            }
+            (end, tried) = (half, shorter);
         }
         let closing = self.closing();
         let rate = closing.map_or(0.0, |closing| closing.rate);
@@ -430,69 +446,6 @@ fn longest<T>(ends: &[f64], found: impl Fn(f64) -> Option<T>) -> Option<T> {
         }
     }
     best
-}
-
-pub(crate) fn moves(state: &RigidBody) -> bool {
-    state.is_dynamic() && !state.held
-}
-
-pub(crate) fn body_at(state: &RigidBody, velocity: Velocity, inverse_inertia: DMat3) -> SolverBody {
-    SolverBody { inverse_mass: state.inverse_mass, inverse_inertia, velocity }
-}
-
-/// A body that impulses do not move.
-pub(crate) fn still(state: &RigidBody) -> SolverBody {
-    SolverBody { inverse_mass: 0.0, inverse_inertia: DMat3::ZERO, velocity: state.present_velocity() }
-}
-
-pub(crate) fn world_inertia(state: &RigidBody) -> (f64, DMat3) {
-    let r = DMat3::from_quat(state.orientation);
-    (state.mass, r * state.inertia * r.transpose())
-}
-
-/// Where the flights of jointed bodies end.
-struct Ends<'s> {
-    joints: &'s [Joined],
-    states: &'s [Cow<'s, RigidBody>],
-    span: Span,
-}
-
-/// By how much the rate of a row is off what leads to the end that its joint asks for.
-struct Missed {
-    row: usize,
-    rate: f64,
-}
-
-impl Ends<'_> {
-    fn miss(
-        &self,
-        system: &System,
-        contacts: &[ContactPoint],
-        place: impl Fn(usize) -> usize,
-    ) -> Vec<Missed> {
-        let tau = self.span.remaining;
-        let mut missed = Vec::new();
-        let mut known: Option<(usize, Vec<f64>)> = None;
-        for (row, contact) in contacts.iter().enumerate() {
-            let Some([number, equation]) = contact.row.and_then(|row| row.equation) else { continue };
-            let joined = &self.joints[number];
-            if known.as_ref().is_none_or(|known| known.0 != number) {
-                let bodies = [contact.a, contact.b].map(&place);
-                let starts = bodies.map(|k| (self.states[k].position, self.states[k].orientation));
-                let ends = bodies.map(|k| {
-                    let (state, v) = (&self.states[k], &system.bodies[k].velocity);
-                    (state.position + v.linear * tau, state.turned(v.angular, tau))
-                });
-                let aims = joined.aims(starts, tau, self.span.step);
-                let off = joined.offs(ends).into_iter().zip(aims).map(|(off, aim)| (off - aim) / tau);
-                known = Some((number, off.collect()));
-            }
-            if let Some((_, rates)) = &known {
-                missed.push(Missed { row, rate: rates[equation] });
-            }
-        }
-        missed
-    }
 }
 
 /// The spins that belong to the angular momenta with the impulses, where the linear ones are off by more than rounding.

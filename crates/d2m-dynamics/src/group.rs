@@ -2,11 +2,12 @@
 
 use crate::SimulationOptions;
 use crate::account::{Entry, balance};
-use crate::attempt::{Clock, Problem, body_at, moves, still, world_inertia};
+use crate::attempt::{Clock, Problem};
 use crate::contact::{Company, ContactPoint, HIT, Span, System, add, impact};
 use crate::joined::Joined;
 use crate::momenta::Momenta;
 use crate::rigid_body::RigidBody;
+use crate::solved_body::{body_at, moves, still, world_inertia};
 use crate::union::{join, root};
 use crate::velocity::Velocity;
 use glam::DMat3;

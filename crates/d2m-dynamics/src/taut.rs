@@ -8,6 +8,7 @@
 use crate::contact::ContactPoint;
 use crate::joined::{Ahead, Joined};
 use crate::rigid_body::RigidBody;
+use crate::solved_body::moves;
 use crate::union::{join, root};
 use std::borrow::Cow;
 
@@ -48,8 +49,8 @@ fn closes_chain(
     let ground = states.len();
     let mut parent: Vec<usize> = (0..=ground).collect();
     numbers.iter().any(|&number| {
-        let moves = |body: usize| states[place(body)].is_dynamic() && !states[place(body)].held;
-        let [a, b] = joints[number].bodies.map(|body| if moves(body) { place(body) } else { ground });
+        let [a, b] =
+            joints[number].bodies.map(|body| if moves(&states[place(body)]) { place(body) } else { ground });
         let is_closed = root(&mut parent, a) == root(&mut parent, b);
         join(&mut parent, a, b);
         is_closed

@@ -3,10 +3,10 @@
 use super::event::Event;
 use super::{Key, Step};
 use crate::StepError;
-use crate::attempt::{body_at, still};
 use crate::contact::{ContactPoint, NEAR, SolverBody, Squeeze};
 use crate::pairs::{AROUND, measure};
 use crate::rigid_body::RigidBody;
+use crate::solved_body::{body_at, still};
 use crate::velocity::Velocity;
 use std::collections::{BTreeMap, BTreeSet};
 
