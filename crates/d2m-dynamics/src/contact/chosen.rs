@@ -1,9 +1,10 @@
 //! Many contacts of one pair, as of a pin in its hole, of which few press: those are solved for, and the others are looked after.
 
 use super::accuracy::Accuracy;
+use super::block::Block;
 use super::newton::Start;
 use super::solve::GROSS;
-use super::system::{Block, System};
+use super::system::System;
 
 /// Blocks of one pair that are added in a round at most, those that are furthest from their law.
 const ADDED: usize = 6;

@@ -2,12 +2,12 @@
 
 mod accuracy;
 mod anderson;
+mod block;
 mod chosen;
 mod factor;
 mod impact;
 mod infeasible;
 mod law;
-mod line;
 mod newton;
 mod point;
 mod rows;

@@ -13,10 +13,11 @@
 
 use super::accuracy::Accuracy;
 use super::anderson::Anderson;
+use super::block::Block;
 use super::factor::{Factor, Square};
 use super::law::{Projected, Slope};
 use super::solver_body::SolverBody;
-use super::system::{Block, System};
+use super::system::System;
 use crate::velocity::Velocity;
 use glam::{DMat3, DVec3};
 
@@ -303,13 +304,11 @@ impl Newton<'_> {
             if found.impulse == [0.0; 3] {
                 continue;
             }
-            for (line, impulse) in block.lines[..block.law.rows()].iter().zip(found.impulse) {
-                for (body, cross, sign) in [(block.a, line.cross_a, 1.0), (block.b, line.cross_b, -1.0)] {
-                    if let Some(place) = self.places[body] {
-                        let added = rows(line.direction, cross);
-                        for (own, added) in gradient[6 * place..6 * place + 6].iter_mut().zip(added) {
-                            *own += sign * impulse * added;
-                        }
+            let (push, [turn_a, turn_b]) = block.pushes(found.impulse);
+            for (body, added) in [(block.a, rows(push, turn_a)), (block.b, rows(-push, -turn_b))] {
+                if let Some(place) = self.places[body] {
+                    for (own, added) in gradient[6 * place..6 * place + 6].iter_mut().zip(added) {
+                        *own += added;
                     }
                 }
             }
@@ -377,16 +376,12 @@ impl Newton<'_> {
             let [aa, bb, ab] = squares.get_or_insert([[[0.0; 6]; 6]; 3]);
             let (_, soft) = self.center_of(k, block);
             let count = block.law.rows();
-            let lines = &block.lines[..count];
             let weight = square_of(slope);
-            let of = |cross: fn(&super::line::Line) -> DVec3| {
-                let mut columns = [[0.0; 6]; 3];
-                for (column, line) in columns.iter_mut().zip(lines) {
-                    *column = rows(line.direction, cross(line));
-                }
-                columns
-            };
-            let (ga, gb) = (of(|line| line.cross_a), of(|line| line.cross_b));
+            let (mut ga, mut gb) = ([[0.0; 6]; 3], [[0.0; 6]; 3]);
+            for (row, direction) in block.directions[..count].iter().enumerate() {
+                let [turn_a, turn_b] = block.turns(row);
+                (ga[row], gb[row]) = (rows(*direction, turn_a), rows(*direction, turn_b));
+            }
             for l in 0..count {
                 let (mut wa, mut wb) = ([0.0; 6], [0.0; 6]);
                 for m in 0..count {

@@ -1,10 +1,11 @@
 //! Which method solves an island.
 
 use super::accuracy::{Accuracy, Company, LOOSE};
+use super::block::Block;
 use super::newton::{Effort, Start};
 use super::solver_body::SolverBody;
 use super::sweeps::Pace;
-use super::system::{Block, System};
+use super::system::System;
 use crate::velocity::Velocity;
 use glam::DVec3;
 
@@ -159,7 +160,7 @@ impl System {
     fn is_jammed(&self, presses: impl Fn(&[f64; 3]) -> bool) -> bool {
         let mut pressed = vec![Vec::new(); self.bodies.len()];
         for (block, _) in self.blocks.iter().zip(&self.impulses).filter(|(_, impulse)| presses(impulse)) {
-            let normal = block.lines[0].direction;
+            let normal = block.directions[0];
             for (body, normal) in [(block.a, -normal), (block.b, normal)] {
                 if self.is_moved(body) && !pressed[body].contains(&normal) {
                     pressed[body].push(normal);

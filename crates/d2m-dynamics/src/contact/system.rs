@@ -1,101 +1,12 @@
 //! The contacts and joints of an island as one system of rows.
 
 use super::ContactPoint;
+use super::block::Block;
 use super::factor::Factor;
 use super::law::Law;
-use super::line::Line;
 use super::solver_body::SolverBody;
 use crate::velocity::Velocity;
 use glam::{DMat3, DVec3};
-
-/// One contact (three rows), or one row. `a` and `b` are places in the list of bodies.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Block {
-    pub(super) a: usize,
-    pub(super) b: usize,
-    /// Along the normal and the tangents; one row has only the first.
-    pub(super) lines: [Line; 3],
-    pub(super) law: Law,
-    /// How fast the rates change at most by an impulse of one along a line: what makes a rate of an impulse.
-    pub(super) scale: f64,
-    /// How the rates along the tangents depend on the impulses along them: a symmetric matrix.
-    pub(super) sliding: [f64; 3],
-    /// The inverse of a bound on its eigenvalues: one step for both directions, so that what slides is braked against its
-    /// velocity and not askew.
-    pub(super) step: f64,
-    /// What surfaces that run add to the rates along the tangents.
-    pub(super) running: [f64; 2],
-}
-
-impl Block {
-    fn new(contact: &ContactPoint, places: [usize; 2], bodies: &[SolverBody]) -> Self {
-        let [a, b] = places;
-        let arms = [contact.arm_a, contact.arm_b];
-        let line = |direction| Line::new(direction, arms, &bodies[a], &bodies[b]);
-        let [t, u] = contact.tangents;
-        let friction = contact.material.friction;
-        let law = if friction > 0.0 { Law::Cone { friction } } else { Law::PUSH };
-        let lines = [line(contact.normal), line(t), line(u)];
-        let (lines, law) = match contact.row {
-            Some(row) if row.is_angular => {
-                let n = contact.normal;
-                ([Line::with_crosses(DVec3::ZERO, [n, n], &bodies[a], &bodies[b]); 3], row.law)
-            }
-            Some(row) => (lines, row.law),
-            None => (lines, law),
-        };
-        let sliding = [0.0; 3];
-        let running = if law.rows() == 3 { contact.running } else { [0.0; 2] };
-        let mut block = Self { a, b, lines, law, scale: 0.0, sliding, step: 0.0, running };
-        block.scale(bodies);
-        block
-    }
-
-    /// The bodies have other inertias.
-    fn renew(&mut self, bodies: &[SolverBody]) {
-        let (a, b) = (&bodies[self.a], &bodies[self.b]);
-        self.lines.iter_mut().for_each(|line| line.renew(a, b));
-        self.scale(bodies);
-    }
-
-    fn scale(&mut self, bodies: &[SolverBody]) {
-        let (a, b) = (&bodies[self.a], &bodies[self.b]);
-        let rows = &self.lines[..self.law.rows()];
-        self.scale = rows.iter().map(|line| line.change(line, a, b)).fold(0.0, f64::max);
-        if self.law.rows() == 3 {
-            let [_, t, u] = &self.lines;
-            let (tt, tu, uu) = (t.change(t, a, b), t.change(u, a, b), u.change(u, a, b));
-            let largest = 0.5 * (tt + uu) + (0.25 * (tt - uu) * (tt - uu) + tu * tu).sqrt();
-            self.sliding = [tt, tu, uu];
-            self.step = if largest > 0.0 { 1.0 / largest } else { 0.0 };
-        }
-    }
-
-    /// Those of the surfaces against each other.
-    #[inline]
-    pub(super) fn rates(&self, velocity: impl Fn(usize) -> Velocity) -> [f64; 3] {
-        let [along, first, second] = self.changes(velocity);
-        [along, first + self.running[0], second + self.running[1]]
-    }
-
-    /// How the rates change with the velocities of the bodies.
-    #[inline]
-    pub(super) fn changes(&self, velocity: impl Fn(usize) -> Velocity) -> [f64; 3] {
-        let (a, b) = (velocity(self.a), velocity(self.b));
-        let mut rates = [0.0; 3];
-        for (rate, line) in rates.iter_mut().zip(&self.lines[..self.law.rows()]) {
-            *rate = line.rate(&a, &b);
-        }
-        rates
-    }
-
-    #[inline]
-    pub(super) fn push(&self, bodies: &mut [SolverBody], impulse: [f64; 3]) {
-        for (line, impulse) in self.lines[..self.law.rows()].iter().zip(impulse) {
-            line.push(bodies, [self.a, self.b], impulse);
-        }
-    }
-}
 
 /// Contacts between bodies: the impulses that they have, and the velocities with these.
 #[derive(Debug)]
@@ -252,27 +163,21 @@ impl System {
             return 0.0;
         }
         // A contact without an impulse that opens obeys the law however it slides.
-        let velocity = |i: usize| &self.bodies[i].velocity;
-        let along = block.lines[0].rate(velocity(block.a), velocity(block.b));
-        if along >= target && *impulse == [0.0; 3] && matches!(block.law, Law::Cone { .. }) {
+        let rates = block.rates(|i| self.bodies[i].velocity);
+        if rates[0] >= target && *impulse == [0.0; 3] && matches!(block.law, Law::Cone { .. }) {
             return 0.0;
         }
-        let [_, t, u] = block.rates(|i| self.bodies[i].velocity);
-        self.natural_map(k, target, block.law.friction() * (t * t + u * u).sqrt())
+        let [_, t, u] = rates;
+        block.natural_map(rates, *impulse, target, block.law.friction() * (t * t + u * u).sqrt())
     }
 
     /// That of one block with another shift s.
-    #[inline]
     pub(super) fn natural_map(&self, k: usize, target: f64, shift: f64) -> f64 {
         let (block, impulse) = (&self.blocks[k], &self.impulses[k]);
         if block.scale == 0.0 || target == f64::NEG_INFINITY {
             return 0.0;
         }
-        let mut rates = block.rates(|i| self.bodies[i].velocity);
-        rates[0] += shift - target + block.law.softness() * impulse[0];
-        let nearest = block.law.project([0, 1, 2].map(|i| impulse[i] - rates[i] / block.scale));
-        let off: f64 = (0..3).map(|i| (impulse[i] - nearest[i]) * (impulse[i] - nearest[i])).sum();
-        off.sqrt() * block.scale
+        block.natural_map(block.rates(|i| self.bodies[i].velocity), *impulse, target, shift)
     }
 
     /// Twice the kinetic energy of the bodies that impulses move.
