@@ -2,7 +2,8 @@
 
 use crate::SimulationOptions;
 use crate::contact::{
-    Accuracy, Company, ContactPoint, NEAR, Present, Room, SolverBody, Span, Start, System, add, select,
+    Accuracy, Company, ContactPoint, LEFT_OVER, NEAR, Present, Room, SolverBody, Span, Start, System, add,
+    select,
 };
 use crate::ends::Ends;
 use crate::gained::{Gained, is_of_joints_alone};
@@ -58,7 +59,6 @@ const LASTING: f64 = 1.0 / 16.0;
 const RESTORED: f64 = 1.0 / 16.0;
 /// The part of the bodies' speed that solutions may leave in any case.
 const OF_SPEED: f64 = 1.0 / 16.0;
-const LEFT_OVER: f64 = 2.0;
 /// How much longer than a flight that bodies at rest would survive one is that is tried first, a power of two: what closes in
 /// from one side may be passed on through so many contacts.
 const PASSED_ON: f64 = 64.0;

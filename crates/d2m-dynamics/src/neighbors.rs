@@ -118,15 +118,22 @@ impl Neighbors {
                 next[i as usize] += 1;
             }
         }
+        for ends in self.starts.windows(2) {
+            self.others[ends[0]..ends[1]].sort_unstable();
+        }
     }
 
     /// The pairs of one of these bodies and any other whose boxes may meet and that `wanted` wants, smaller number first, ascending.
     pub(crate) fn pairs(&self, of: &[usize], wanted: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
         let mut pairs = Vec::new();
+        let mut is_of = vec![false; self.boxes.len()];
+        of.iter().for_each(|&i| is_of[i] = true);
+        // Of two of them the one with the smaller number has the pair: of all bodies the pairs are in order as they are found.
         for &i in of {
             for &j in &self.others[self.starts[i]..self.starts[i + 1]] {
-                let (a, b) = (i.min(j as usize), i.max(j as usize));
-                if self.boxes[a].may_meet(&self.boxes[b], 0.0) && wanted(a, b) {
+                let j = j as usize;
+                let (a, b) = (i.min(j), i.max(j));
+                if (j > i || !is_of[j]) && self.boxes[a].may_meet(&self.boxes[b], 0.0) && wanted(a, b) {
                     pairs.push((a, b));
                 }
             }

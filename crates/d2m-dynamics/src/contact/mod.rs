@@ -26,5 +26,6 @@ pub use point::Material;
 pub(crate) use point::upright;
 pub(crate) use point::{ContactPoint, JointRow, add, tangents};
 pub(crate) use rows::{HIT, NEAR, Room, Span, select};
+pub(crate) use solve::LEFT_OVER;
 pub(crate) use solver_body::SolverBody;
 pub(crate) use system::{Present, System};

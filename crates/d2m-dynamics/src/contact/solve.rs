@@ -33,6 +33,9 @@ pub(super) const GROSS: f64 = 0.25;
 /// which costs less than a direct solution of all.
 const SWEPT: f64 = 0.5;
 const OF_SPEED: f64 = 1.0 / 16.0;
+/// How many times what solutions of bodies that move may leave counts as a failure: only then others are tried, as a direct one of a crowd,
+/// which takes longer than sweeps and of twice as much rarely leaves less than half.
+pub(crate) const LEFT_OVER: f64 = 2.0;
 /// The part of the slow speed below which bodies are about to rest.
 const CALM: f64 = 0.25;
 
@@ -65,7 +68,7 @@ impl System {
             }
             let rests = moved <= SOME && self.is_calm(accuracy);
             if moved > COUPLE && !rests && !could_stick {
-                if residual <= self.left(accuracy) {
+                if residual <= self.enough(accuracy).max(LEFT_OVER * self.swept(accuracy)) {
                     return residual;
                 }
                 let short =
@@ -117,10 +120,13 @@ impl System {
 
     /// What solutions of bodies that move may leave.
     pub(crate) fn left(&self, accuracy: Accuracy) -> f64 {
-        let swept = (SWEPT * accuracy.slow).min(OF_SPEED * self.mean_speed());
+        self.enough(accuracy).max(self.swept(accuracy))
+    }
+
+    /// What sweeps may leave of a crowd.
+    fn swept(&self, accuracy: Accuracy) -> f64 {
         let may_sweep = accuracy.in_crowd() && (self.is_crowd() || !self.is_calm(accuracy));
-        let swept = if may_sweep { swept } else { 0.0 };
-        self.enough(accuracy).max(swept)
+        if may_sweep { (SWEPT * accuracy.slow).min(OF_SPEED * self.mean_speed()) } else { 0.0 }
     }
 
     /// Are the bodies about to rest, all that contacts connect?
@@ -218,7 +224,28 @@ mod tests {
     use super::*;
     use crate::contact::ContactPoint;
     use crate::contact::point::{Material, upright};
+    use crate::contact::sweeps::tests::column;
     use glam::DMat3;
+
+    /// Of a tall column sweeps leave something: a direct solution follows where that is more than twice what may be left.
+    #[test]
+    fn crowds_are_solved_directly_where_sweeps_fail() {
+        let (count, speed) = (200, 10.0);
+        // All move across without friction, so that what may be left is a part of the slow speed.
+        let crossing = || {
+            let mut crowd = column(count, speed);
+            crowd.bodies.iter_mut().for_each(|body| body.velocity.linear.x = 1e4);
+            crowd
+        };
+        let accuracy = |slow: f64| {
+            let (precision, relative) = (1e-9, 1.0 / 1024.0);
+            Accuracy { precision, relative, aim: 1.0, company: Company::Crowd, slow }
+        };
+        let targets = vec![0.0; count];
+        let left = crossing().sweep_until(&targets, accuracy(0.0), Pace::Conjugate, FIRST);
+        let solved = |part: f64| crossing().solve(&targets, accuracy(part * left / SWEPT), Start::Present);
+        assert!(left > 1e-3 && solved(0.6) == left && solved(0.4) < 0.5 * left, "{left}");
+    }
 
     /// What lies between two bodies of which one follows a motion may be taken along, by a few bodies; of a crowd sweeps come first.
     #[test]
