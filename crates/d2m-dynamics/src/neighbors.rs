@@ -127,7 +127,9 @@ impl Neighbors {
     pub(crate) fn pairs(&self, of: &[usize], wanted: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
         let mut pairs = Vec::new();
         let mut is_of = vec![false; self.boxes.len()];
-        of.iter().for_each(|&i| is_of[i] = true);
+        for &i in of {
+            is_of[i] = true;
+        }
         // Of two of them the one with the smaller number has the pair: of all bodies the pairs are in order as they are found.
         for &i in of {
             for &j in &self.others[self.starts[i]..self.starts[i + 1]] {

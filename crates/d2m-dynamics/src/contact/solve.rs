@@ -140,7 +140,8 @@ impl System {
         let is_driven = |body: &SolverBody| body.inverse_mass == 0.0 && body.velocity != Velocity::default();
         let drives = !accuracy.in_crowd() && self.moved() <= FEW && self.bodies.iter().any(is_driven);
         let is_whole = accuracy.company != Company::Heap;
-        let is_slow = is_whole && self.moved() <= SOME && self.mean_speed() <= accuracy.slow;
+        let slow = if accuracy.in_crowd() { CALM * accuracy.slow } else { accuracy.slow };
+        let is_slow = is_whole && self.moved() <= SOME && self.mean_speed() <= slow;
         let is_couple = self.moved() <= COUPLE && !accuracy.in_crowd();
         if !(drives || is_slow || is_couple) {
             return false;
@@ -263,5 +264,28 @@ mod tests {
             system.could_stick(Accuracy { precision: 1e-7, relative: 0.0, aim: 1.0, company, slow: 1.0 })
         };
         assert!(among(Company::Few) && !among(Company::Crowd) && !among(Company::Heap));
+    }
+
+    /// Bodies that press on each other and move slowly may stick; of many others only where they are about to rest.
+    #[test]
+    fn islands_of_crowds_stick_where_they_are_about_to_rest() {
+        let body = |inverse_mass: f64, speed: f64| SolverBody {
+            inverse_mass,
+            inverse_inertia: DMat3::IDENTITY * inverse_mass,
+            velocity: Velocity { linear: DVec3::X * speed, angular: DVec3::ZERO },
+        };
+        let rough =
+            |pair| ContactPoint { material: Material { friction: 0.5, restitution: 0.0 }, ..upright(pair) };
+        // So many that they are no couple, between two that stand still.
+        let bodies: Vec<SolverBody> =
+            [0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0].map(|mass| body(mass, mass)).to_vec();
+        let contacts: Vec<ContactPoint> = (0..6).map(|i| rough([i, i + 1])).collect();
+        let mut system = System::new(bodies, &contacts, |i| i);
+        system.impulses.fill([1e-9, 0.0, 0.0]);
+        let among = |company: Company, slow: f64| {
+            system.could_stick(Accuracy { precision: 1e-7, relative: 0.0, aim: 1.0, company, slow })
+        };
+        assert!(among(Company::Few, 2.0) && !among(Company::Few, 0.5));
+        assert!(among(Company::Crowd, 8.0) && !among(Company::Crowd, 2.0) && !among(Company::Heap, 8.0));
     }
 }
