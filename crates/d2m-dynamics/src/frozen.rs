@@ -2,8 +2,8 @@
 
 use crate::{BodyId, Simulation};
 use d2m_bvh::{
-    Contact, Distance, DistanceOptions, MeshError, MeshTree, Posed, QueryError, QueryOptions, Solid, TriMesh,
-    Window, distance_within,
+    Contact, Distance, DistanceOptions, Evidence, MeshError, MeshTree, Posed, QueryError, QueryOptions,
+    Solid, TriMesh, Window, distance_within,
 };
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::ConstantTwist;
@@ -66,20 +66,20 @@ pub struct Frozen {
 pub enum RayAnswer {
     /// Certified: nothing on its way.
     Free,
-    /// Certified: nothing before `lo` of its way, and this body by `hi`.
+    /// Certified: nothing before `lo` of its way, and by `hi` it has come within the tolerance, and the minimum separation, of this body.
     Hit {
         /// The first body that it meets.
         body: BodyId,
         /// How far along the way it is free, as a length.
         lo: f64,
-        /// How far along the way it has met the body.
+        /// By how far along the way it has met the body.
         hi: f64,
         /// The point of the body's surface.
         point: DVec3,
         /// Outward unit normal of the body there.
         normal: DVec3,
     },
-    /// The budget ran out. Certified: nothing before `free_until` of its way.
+    /// The budget ran out, or a search that may stop early stopped before it met anything. Certified: nothing before `free_until` of its way.
     Undecided {
         /// How far along the way it is free, as a length.
         free_until: f64,
@@ -166,6 +166,10 @@ impl Frozen {
             FirstContact::Separated => RayAnswer::Free,
             FirstContact::Undecided { clear_until, .. } => {
                 RayAnswer::Undecided { free_until: along(clear_until).lo().max(0.0) }
+            }
+            // What stops early may be near nothing, by any time.
+            FirstContact::Contact { contact, .. } if contact.evidence == Evidence::Early => {
+                RayAnswer::Undecided { free_until: along(contact.time_lo).lo().max(0.0) }
             }
             FirstContact::Contact { a, contact, .. } => {
                 // The point was added last, so it is the second one.

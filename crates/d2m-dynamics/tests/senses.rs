@@ -2,7 +2,7 @@
 
 mod ground;
 
-use d2m_bvh::{MeshTree, QueryOptions, StartState, TriMesh, Window};
+use d2m_bvh::{MeshTree, Mode, QueryOptions, StartState, TriMesh, Window};
 use d2m_dynamics::{
     Body, BodyId, Joint, Kind, Mass, MassProperties, Part, Presence, RayAnswer, Simulation, SimulationError,
     SimulationOptions, TouchChange,
@@ -124,6 +124,23 @@ fn lengths_along_rays_are_rounded_outward() {
         let along = |part: f64| IntervalVec3::point(way).norm() * Interval::point(part);
         assert!(lo <= along(contact.time_lo).lo() && along(contact.time_hi).hi() <= hi, "{way}");
     }
+}
+
+/// A ray that passes above a body, asked of searches that may stop early: what stops has met nothing.
+#[test]
+fn a_ray_that_stops_early_hits_nothing() {
+    let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
+    simulation.add(&Body::new("cube", cube()).with_position(DVec3::X * 3.0)).unwrap();
+    let now = simulation.frozen(QueryOptions::default().with_mode(Mode::Capoeira));
+    let mut stopped = 0;
+    for exponent in -26..0 {
+        let origin = DVec3::Y * (0.5 + f64::from(exponent).exp2());
+        match now.ray(origin, DVec3::new(10.0, 0.0, 0.1)).unwrap() {
+            RayAnswer::Undecided { free_until } if free_until > 2.4 && free_until < 3.6 => stopped += 1,
+            answer => assert_eq!(answer, RayAnswer::Free, "{exponent}"),
+        }
+    }
+    assert!(stopped > 3, "{stopped}");
 }
 
 /// A belt takes along what lies on it, and on an awake island the one beside is not moved.

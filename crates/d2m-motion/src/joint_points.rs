@@ -5,8 +5,13 @@ use crate::error::{TimesFault, fault, find_times_fault};
 use d2m_lanes::DoubleDouble;
 
 /// Spans of time between these have fifth powers that neither under- nor overflow.
-const SHORTEST: f64 = 1e-50;
-const LONGEST: f64 = 1e50;
+pub(crate) const SHORTEST: f64 = 1e-50;
+pub(crate) const LONGEST: f64 = 1e50;
+
+/// Can polynomials of the fifth degree last so long?
+pub(crate) fn is_length(span: f64) -> bool {
+    (SHORTEST..=LONGEST).contains(&span)
+}
 
 /// What a joint passes through: positions at times and, where they are known, velocities and accelerations there. As in a
 /// `JointTrajectory` of ROS.
@@ -99,7 +104,7 @@ impl JointPoints {
     pub(crate) fn coefficients(&self, piece: usize) -> Option<Vec<Enclosed>> {
         let ends = |list: &[f64]| [list[piece], list[piece + 1]].map(Enclosed::exact);
         let h = DoubleDouble::from_difference(self.times[piece + 1], self.times[piece]);
-        if !(SHORTEST..=LONGEST).contains(&h.hi) {
+        if !is_length(h.hi) {
             return None;
         }
         let length = Enclosed { center: h, radius: 0.0 };

@@ -93,7 +93,7 @@ impl JointValue {
     ///
     /// # Errors
     /// Times that are not finite or do not increase, not one more time than pieces, a piece without coefficients or with
-    /// one that is not finite, or a jump of more than 1e-9 where two pieces meet.
+    /// one that is not finite, or where two pieces meet a jump of more than 1e-9 or a value that doubles cannot hold.
     #[expect(clippy::needless_pass_by_value, reason = "as its sister, and as every caller has it")]
     pub fn try_pieces(times: Vec<f64>, pieces: Vec<Vec<f64>>) -> Result<Self, MotionError> {
         if let Some(TimesFault { index, reason }) = find_times_fault(&times) {
@@ -117,8 +117,13 @@ impl JointValue {
             let (before, after) =
                 (value.over_piece(index - 1, time, time), value.over_piece(index, time, time));
             let jump = (before.value.center - after.value.center).hi.abs();
-            // Also what is no number is a jump.
             let rounding = before.value.radius + after.value.radius;
+            if !rounding.is_finite() {
+                let reason =
+                    format!("the value at the time {time:?} is beyond the numbers: nothing is known of it");
+                return Err(fault(format!("value, pieces[{index}]"), reason));
+            }
+            // Also what is no number is a jump.
             if jump.is_nan() || jump > LARGEST_JUMP + rounding {
                 let reason =
                     format!("the value jumps by {jump:?} at the time {time:?} (at most {LARGEST_JUMP:?})");

@@ -1,5 +1,6 @@
 //! Smooth motions through poses: cubic and quintic Hermite splines, each span a chain of joints.
 use crate::error::fault;
+use crate::joint_points::{LONGEST, SHORTEST, is_length};
 use crate::screw::atan2_positive;
 use crate::sequence::Sequence;
 use crate::{
@@ -128,8 +129,8 @@ impl Spline {
     /// Through poses with the given twists there (world axes; the linear part is the velocity of the pose's point `at`).
     ///
     /// # Errors
-    /// Fewer than two poses, times not finite or not increasing, a pose or twist that is not finite, or between two poses
-    /// a turn of half a circle that is left to be made.
+    /// Fewer than two poses, times not finite, not increasing, or less than 1e-50 or more than 1e50 apart, a pose or twist that is
+    /// not finite, or between two poses a turn of half a circle that is left to be made.
     pub fn try_with_twists(
         keyframes: &[(f64, Pose, Twist)],
         degree: SplineDegree,
@@ -175,7 +176,17 @@ impl Spline {
 fn check(keyframes: impl Iterator<Item = (f64, Pose)>) -> Result<(), MotionError> {
     let frames: Vec<(f64, Pose)> = keyframes.collect();
     // The same times and poses that keyframes take.
-    crate::Keyframes::try_new(&frames, crate::Span::Linear).map(|_| ())
+    crate::Keyframes::try_new(&frames, crate::Span::Linear)?;
+    let lengths = frames.windows(2).map(|pair| pair[1].0 - pair[0].0);
+    match lengths.enumerate().find(|(_, length)| !is_length(*length)) {
+        Some((index, length)) => {
+            let reason = format!(
+                "{length:?} after the one before: spans of a spline are {SHORTEST:?} to {LONGEST:?} long"
+            );
+            Err(fault(format!("times[{}]", index + 1), reason))
+        }
+        None => Ok(()),
+    }
 }
 
 /// The rotation vector of a unit quaternion, of length at most π.

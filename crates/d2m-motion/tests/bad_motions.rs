@@ -1,8 +1,8 @@
 //! Bad motions are refused by every constructor, with the place and the value.
 
 use d2m_motion::{
-    Chain, ConstantTwist, Joint, JointKind, JointValue, Keyframes, MotionError, Pose, Retimed, Span, Spline,
-    SplineDegree, Twist,
+    Chain, ConstantTwist, Joint, JointKind, JointValue, Keyframes, MotionError, Pose, Retimed, RigidMotion,
+    Span, Spline, SplineDegree, Twist,
 };
 use glam::{DQuat, DVec3};
 
@@ -111,6 +111,29 @@ fn chains_and_values() {
     names(pieces(vec![0.0, 1.0, 2.0], vec![vec![0.0], vec![]]), &["pieces[1]"]);
     names(pieces(vec![0.0, 1.0], vec![vec![0.0, f64::NAN]]), &["pieces[0]", "NaN"]);
     names(pieces(vec![0.0], vec![]), &["times"]);
+    // 1e300·1e20: neither piece's value at 1e20 is a double, and nothing is known of how far apart they are.
+    let far = vec![vec![0.0, 1e300], vec![0.0]];
+    names(pieces(vec![0.0, 1e20, 2e20], far), &["pieces[1]", "beyond the numbers"]);
+}
+
+/// Powers of shorter and of longer spans are no doubles: what a spline did over them was the identity.
+#[test]
+fn splines_over_spans_beyond_fifth_powers() {
+    let frames = |length: f64| {
+        let turned = Pose { rotation: DQuat::from_rotation_z(1.0), translation: DVec3::X, ..Pose::IDENTITY };
+        [(0.0, Pose::IDENTITY), (length, turned)]
+    };
+    for degree in [SplineDegree::Cubic, SplineDegree::Quintic] {
+        for length in [1e-100, 0.9e-50, 1.1e50, 1e300] {
+            names(Spline::try_through(&frames(length), degree), &["times[1]", &format!("{length:?}")]);
+        }
+        for length in [1e-50, 1.0, 1e50] {
+            let spline = Spline::try_through(&frames(length), degree).unwrap();
+            let middle = spline.pose_and_twist(0.5 * length).0.transform_point(DVec3::X);
+            let expected = DVec3::X * 0.5 + DQuat::from_rotation_z(0.5) * DVec3::X;
+            assert!((middle - expected).length() < 1e-15, "{length:?}: {middle}");
+        }
+    }
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! What an audit asks the engine: each family makes its query number `index` of a seed, and answers whatever it asks.
+use super::axles::axles;
+use super::case::{Case, ask, usual};
 use crate::accuracy::hostile;
-use d2m::audit::Auditor;
-use d2m::bvh::{ClearanceOptions, clearance, collide, contact_spans, departure, distance_within};
+use d2m::bvh::{collide, distance_within};
 use d2m::motion::{Chain, Joint, JointKind, JointValue, Keyframes, Span, Spline, SplineDegree};
 use d2m::{
     Body, Budget, ConstantTwist, MeshTree, Mode, Moving, PairCache, Pose, Posed, ProximityOptions,
@@ -13,19 +14,11 @@ use d2m_testing::{Draw, Opaque, OpaqueWithState, Random, SharpFamily, SharpScene
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
-/// One question of a family.
-#[derive(Clone, Copy)]
-pub(in crate::accuracy) struct Case<'a> {
-    pub(in crate::accuracy) auditor: &'a Auditor,
-    pub(in crate::accuracy) seed: u64,
-    pub(in crate::accuracy) index: u64,
-}
-
 /// Makes a question and asks it.
 pub(super) type Family = fn(&Case<'_>);
 
 /// Each with its name. Cases of a family come one after the other, in turns with those of the others.
-pub(super) const FAMILIES: [(&str, Family); 10] = [
+pub(super) const FAMILIES: [(&str, Family); 11] = [
     ("sharp", sharp),
     ("hostile", |case| hostile::ask(case.seed, case.index)),
     ("small", small),
@@ -33,44 +26,11 @@ pub(super) const FAMILIES: [(&str, Family); 10] = [
     ("motions", any_motion),
     ("caches", caches),
     ("questions", questions),
+    ("axles", axles),
     ("rest", at_rest),
     ("worlds", worlds),
     ("simulations", simulations),
 ];
-
-/// Node tests of one query: an audit wants many queries rather than long ones.
-const MOST_TESTS: u64 = 1 << 15;
-
-impl Case<'_> {
-    /// The body of a surface, whose boxes are judged, too.
-    fn tree(&self, surface: Surface) -> MeshTree {
-        let tree = MeshTree::new(surface.into_mesh(TriMesh::try_new));
-        self.auditor.check_boxes(&tree);
-        tree
-    }
-
-    fn random(&self) -> Random {
-        Random::new(self.seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(self.index))
-    }
-
-    /// A small body of some kind, without slack, with an edge or round.
-    fn shape(&self, random: &mut Random) -> MeshTree {
-        self.tree(match random.index(4) {
-            0 => Surface::cube(random.log_between(0.05, 0.5)),
-            1 => Surface::torus(8, 4, random.between(0.05, 0.4)).map(|p| p * 0.7),
-            2 => Surface::cone(7, random.log_between(0.05, 0.5), random.signed()),
-            _ => {
-                let at = random.direction();
-                let size = random.log_between(1e-3, 0.1);
-                Surface::soup((0..9).map(|_| at + random.vector() * size).collect::<Vec<_>>())
-            }
-        })
-    }
-}
-
-fn usual() -> QueryOptions {
-    QueryOptions::default().with_budget(Budget::UNLIMITED.with_node_tests(MOST_TESTS))
-}
 
 fn sharp_options(scene: &SharpScene) -> QueryOptions {
     usual().with_solid(Solid::Surface).with_tolerance(scene.tolerance).with_min_separation(scene.separation)
@@ -217,15 +177,7 @@ fn questions(case: &Case<'_>) {
     let trees = [case.shape(random), case.shape(random)];
     let motions = [motion(random), motion(random)];
     let bodies = [0, 1].map(|k| Moving::new(&trees[k], &*motions[k]));
-    let options = drawn_options(random);
-    match case.index % 3 {
-        0 => {
-            let asked = ClearanceOptions::default().with_solid(Solid::Surface).with_budget(options.budget);
-            let _ = clearance(bodies[0], bodies[1], Window::UNIT, &asked);
-        }
-        1 => drop(contact_spans(bodies[0], bodies[1], Window::UNIT, &options, Some(1e-3))),
-        _ => drop(departure(bodies[0], bodies[1], Window::UNIT, &options)),
-    }
+    ask(case.index % 3, bodies, &drawn_options(random));
 }
 
 fn at_rest(case: &Case<'_>) {

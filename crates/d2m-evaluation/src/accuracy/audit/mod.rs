@@ -1,5 +1,9 @@
 //! `cargo xtask accuracy audit`: what the engine concludes on its way, judged one by one.
 #[cfg(feature = "audit")]
+mod axles;
+#[cfg(feature = "audit")]
+mod case;
+#[cfg(feature = "audit")]
 pub(super) mod families;
 #[cfg(feature = "audit")]
 mod report;
@@ -41,8 +45,9 @@ pub(super) fn run(_: &Options) -> TaskResult {
 /// Asks all families in turns until enough was judged.
 #[cfg(feature = "audit")]
 pub(super) fn run(options: &Options) -> TaskResult {
+    use case::Case;
     use d2m::audit::{Auditor, Effort};
-    use families::{Case, FAMILIES};
+    use families::FAMILIES;
     let wanted: Vec<_> = FAMILIES
         .iter()
         .filter(|(name, _)| options.only.iter().all(|only| name.contains(only.as_str())))
