@@ -30,6 +30,9 @@ const CORRECTIONS: u32 = 3;
 const CROWD_CORRECTIONS: u32 = 1;
 /// And with the ends of jointed bodies' flights put right.
 const JOINT_CORRECTIONS: u32 = 8;
+/// How many times further off than what is not corrected at all corrections are given up, which saves time where they diverge. Under brakes they may come
+/// back from there.
+const FAR_OFF: f64 = 8.0;
 /// Solutions, of these, whose impulses may brake what oscillates fast: the first one has no brakes, and what it has is rarely the force.
 const PULLS: u32 = 2;
 /// The part of twice the kinetic energy that the brakes of a flight may add: in a hundred flights not more than a hundredth.
@@ -404,13 +407,15 @@ impl Problem<'_> {
             let ends = Ends { joints: self.joints, states, span };
             let missed = ends.miss(system, &found.contacts, place);
             found.missed = missed.iter().map(|missed| missed.rate.abs()).fold(0.0, f64::max);
-            found.diverges = found.missed > *uncorrected.get_or_insert(found.missed);
+            let first = *uncorrected.get_or_insert(found.missed);
+            found.diverges = found.missed > first;
+            let is_far_off = brakes == Brakes::None && found.missed > FAR_OFF * first;
             let most = match (missed.is_empty(), system.is_crowd()) {
                 (true, true) => CROWD_CORRECTIONS,
                 (true, false) => CORRECTIONS,
                 (false, _) => JOINT_CORRECTIONS,
             };
-            if correction == most || !is_off && found.missed <= precision {
+            if correction == most || is_far_off || !is_off && found.missed <= precision {
                 break;
             }
             if nearest.as_ref().is_none_or(|(nearest, _)| found.missed < nearest.missed) && !missed.is_empty()
