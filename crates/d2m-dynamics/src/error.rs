@@ -257,12 +257,12 @@ pub enum StepError {
         time: f64,
     },
     /// A kinematic body turns or speeds up so fast that flights of constant twists, 4096 in a step, stay no closer to its motion than
-    /// a hundredth of the gap; or its motion encloses itself too widely to show it.
+    /// a hundredth of the gap; or its motion encloses itself too widely to show it. Or the flight of any body is beyond the numbers.
     #[error(
         "at time {time}: body {body} moves too fast, or too unevenly, for the step: take a shorter step or a wider gap"
     )]
     TooFast {
-        /// The kinematic body.
+        /// The body.
         body: String,
         /// When.
         time: f64,

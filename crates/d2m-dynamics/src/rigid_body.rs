@@ -6,7 +6,7 @@ use crate::hollow::{bores, cavity};
 use crate::momenta::Momenta;
 use crate::turning::{Pull, extreme_eigenvalues};
 use crate::velocity::Velocity;
-use crate::{MassProperties, SimulationError};
+use crate::{MassProperties, SimulationError, StepError};
 use d2m_bvh::{MeshTree, Moving, Posed, QueryError, Solid};
 use d2m_interval::Interval;
 use d2m_motion::{ConstantTwist, CoveredMotion, Pose, RigidMotion};
@@ -505,6 +505,21 @@ impl RigidBody {
         self.horizon = horizon;
         self.version += 1;
         self.has_flown = true;
+    }
+
+    /// [`Self::fly`], if the flight has numbers.
+    ///
+    /// # Errors
+    /// [`StepError::TooFast`] where the velocity, or the way or the turn to the horizon, is beyond doubles.
+    pub(crate) fn try_fly(&mut self, velocity: Velocity, horizon: f64) -> Result<(), StepError> {
+        let length = horizon - self.time;
+        let is_known =
+            (self.position + velocity.linear * length).is_finite() && (velocity.angular * length).is_finite();
+        if !is_known {
+            return Err(StepError::TooFast { body: self.name.to_string(), time: self.time });
+        }
+        self.fly(velocity, horizon);
+        Ok(())
     }
 
     /// Where the body is at a time, with the velocities of its momenta: for the first line of a run, whether or not it has flown before.

@@ -219,6 +219,21 @@ fn numbers_that_cannot_be_used_are_refused() {
     }
 }
 
+/// What falls until its velocity is no number ends the run with an error: alone, and where others might be met.
+#[test]
+fn flights_beyond_the_numbers_end_the_run() {
+    for others in 0..2 {
+        let options = SimulationOptions::default().with_gravity(DVec3::NEG_X * 1e308).with_step(10.0);
+        let mut simulation = Simulation::new(options).unwrap();
+        for k in 0..=others {
+            let place = DVec3::Z * (4.0 * f64::from(k));
+            simulation.add(&Body::new("stone", tree("box")).with_position(place)).unwrap();
+        }
+        let error = (0..100).find_map(|_| simulation.step().err()).unwrap();
+        assert_eq!(error, StepError::TooFast { body: "stone".into(), time: simulation.time() });
+    }
+}
+
 /// Bodies that are held have no flight that ends: those they touch are solved without, and each step ends.
 #[test]
 fn bodies_that_are_held_end_no_flights_of_others() {

@@ -80,7 +80,7 @@ impl Step<'_> {
                 body.lead = Some(push.lead);
                 body.free = false;
                 if !is_same(body, push.body, push.velocity, push.horizon) {
-                    body.fly(push.velocity, push.horizon);
+                    body.try_fly(push.velocity, push.horizon)?;
                     changed.push(push.body);
                 }
                 solved_for[push.body] = true;
@@ -98,7 +98,7 @@ impl Step<'_> {
                 body.lead = Some(body.lead.unwrap_or(0.5 * length));
                 body.free = true;
                 if !is_same(body, i, velocity, horizon) {
-                    body.fly(velocity, horizon);
+                    body.try_fly(velocity, horizon)?;
                     changed.push(i);
                 }
             } else if body.is_kinematic() && body.flight.reference_time() == time {
