@@ -60,6 +60,7 @@ mod options;
 mod pairs;
 mod pull;
 mod pushed;
+mod quiet;
 mod rebuilt;
 mod record;
 mod rigid_body;

@@ -2,6 +2,7 @@
 
 use crate::faces::Faces;
 use crate::pairs::Pair;
+use crate::quiet::Quiet;
 use crate::rigid_body::{RigidBody, Role};
 use crate::{Body, BodyId, Simulation, SimulationError};
 use std::sync::Arc;
@@ -209,6 +210,6 @@ impl Simulation {
             body.asleep = false;
             body.time = self.time;
         }
-        body.quiet = 0.0;
+        body.quiet = Quiet::default();
     }
 }

@@ -27,7 +27,8 @@ pub struct SimulationOptions {
     pub max_events: u32,
     /// Node tests of one pair query at most. A query that meets the limit ends the flight early, at a certified time. Default 2²².
     pub node_tests: u64,
-    /// Islands that rest for half a second sleep. Default true.
+    /// Islands that friction holds sleep once their surfaces are slower than a tenth of the gap a half second for that long and not faster than before;
+    /// among more than 64 bodies, once they have moved by less than a quarter of the gap in it. Default true.
     pub sleeping: bool,
 }
 

@@ -3,6 +3,7 @@
 use crate::SimulationError;
 use crate::body::{Body, Kind, Presence};
 use crate::faces::Faces;
+use crate::quiet::Quiet;
 use crate::rigid_body::{RigidBody, Role, rest};
 use crate::velocity::Velocity;
 use d2m_bvh::{MeshTree, TriMesh};
@@ -73,7 +74,7 @@ impl RigidBody {
         self.version += 1;
         (self.has_flown, self.held, self.free, self.asleep) = (false, false, false, false);
         self.lead = None;
-        (self.gained, self.quiet, self.slowest) = (0.0, 0.0, 0.0);
+        (self.gained, self.quiet) = (0.0, Quiet::default());
     }
 
     /// Nobody has the place any more; the mesh is let go.

@@ -4,6 +4,7 @@ use crate::body::{Body, BodyId, Damping, Groups, Kind, Mass, Presence};
 use crate::faces::Faces;
 use crate::hollow::{bores, cavity};
 use crate::momenta::Momenta;
+use crate::quiet::Quiet;
 use crate::turning::{Pull, extreme_eigenvalues};
 use crate::velocity::Velocity;
 use crate::{MassProperties, SimulationError, StepError};
@@ -127,10 +128,8 @@ pub(crate) struct RigidBody {
     /// The account of energy: what contacts have added to the least energy before.
     pub(crate) gained: f64,
     pub(crate) asleep: bool,
-    /// For how long its surface has been slow, and not faster than before.
-    pub(crate) quiet: f64,
-    /// How fast it was at least in that time.
-    pub(crate) slowest: f64,
+    /// For how long it has been quiet.
+    pub(crate) quiet: Quiet,
 }
 
 impl RigidBody {
@@ -253,8 +252,7 @@ impl RigidBody {
             free: false,
             gained: 0.0,
             asleep: false,
-            quiet: 0.0,
-            slowest: 0.0,
+            quiet: Quiet::default(),
         };
         made.check_momenta(["velocity", "angular velocity"], [DVec3::ZERO; 2])?;
         Ok(made)

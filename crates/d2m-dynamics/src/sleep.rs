@@ -1,25 +1,13 @@
 //! Rest: islands whose surfaces have been slow for long enough do not move until something comes close.
 
+use crate::Simulation;
 use crate::contact::ContactPoint;
+use crate::group::CROWD;
+use crate::quiet::{Quiet, Rest, Surface};
 use crate::rigid_body::RigidBody;
 use crate::union::{join, root};
 use crate::velocity::Velocity;
-use crate::{Simulation, SimulationOptions};
 use glam::DVec3;
-
-/// How long, in seconds of gravity's scale or plain units of time without gravity.
-const QUIET_TIME: f64 = 0.5;
-/// The part of the gap by which a surface may move in that time.
-const QUIET_WAY: f64 = 0.1;
-
-/// Of the speed of quiet bodies, the part that counts as standing still: what no friction brakes goes on at any other speed.
-const STILL: f64 = 1.0 / 1024.0;
-/// By how much more a body may be faster than it was in its quiet time.
-const GROWTH: f64 = 1.0625;
-
-fn quiet_speed(options: &SimulationOptions) -> f64 {
-    QUIET_WAY * options.gap / QUIET_TIME
-}
 
 impl Simulation {
     /// After a step of length `step`: counts how long each body has been slow, and puts islands to sleep that touch
@@ -28,28 +16,34 @@ impl Simulation {
         if !self.options.sleeping {
             return;
         }
-        let limit = quiet_speed(&self.options);
         let mut rubs = vec![false; self.bodies.len()];
         let is_rubbed = |c: &ContactPoint| c.impulse > 0.0 && c.material.friction > 0.0;
         for (&(a, b), _) in self.pairs.iter().filter(|(_, pair)| pair.contacts.iter().any(is_rubbed)) {
             (rubs[a], rubs[b]) = (true, true);
         }
-        let still = STILL * limit;
+        let is_crowd = self.bodies.len() > CROWD;
         for (body, rubs) in self.bodies.iter_mut().zip(rubs) {
             if !body.is_dynamic() || body.asleep {
                 continue;
             }
-            let speed = body.surface_speed();
-            let slow = speed <= (if rubs { limit } else { still }) && !body.held;
-            // What a force speeds up is not at rest, however slow it is.
-            if slow && speed <= GROWTH * body.slowest + still {
-                body.quiet += step;
-                body.slowest = body.slowest.min(speed);
-            } else {
-                (body.quiet, body.slowest) = (0.0, speed);
+            if body.held {
+                body.quiet = Quiet::default();
+                continue;
             }
+            let rest = match (rubs, is_crowd) {
+                (false, _) => Rest::Unbraked,
+                (true, false) => Rest::BySpeed,
+                (true, true) => Rest::ByWay,
+            };
+            let surface = Surface {
+                position: body.position,
+                orientation: body.orientation,
+                radius: body.radius,
+                speed: body.surface_speed(),
+            };
+            body.quiet.go_on(surface, rest, step, &self.options);
         }
-        if !self.bodies.iter().any(|body| body.quiet >= QUIET_TIME && !body.asleep) {
+        if !self.bodies.iter().any(|body| body.quiet.is_long() && !body.asleep) {
             return;
         }
         let mut parent: Vec<usize> = (0..self.bodies.len()).collect();
@@ -57,7 +51,7 @@ impl Simulation {
         let mut restless: Vec<bool> = self
             .bodies
             .iter()
-            .map(|body| body.is_dynamic() && !body.asleep && body.quiet < QUIET_TIME)
+            .map(|body| body.is_dynamic() && !body.asleep && !body.quiet.is_long())
             .collect();
         let pressed = |contact: &ContactPoint| contact.impulse > 0.0;
         for (&(a, b), pair) in &self.pairs {
@@ -96,7 +90,7 @@ impl Simulation {
 /// No momentum and no motion from now on.
 fn sleep(body: &mut RigidBody) {
     body.asleep = true;
-    body.quiet = 0.0;
+    body.quiet = Quiet::default();
     // The energy of the momenta is lost, and so is as much of what contacts have added.
     body.gained = (body.gained - body.kinetic_energy()).max(0.0);
     (body.momentum, body.angular_momentum) = Default::default();

@@ -4,6 +4,7 @@ use crate::body::{Damping, Groups, Kind};
 use crate::contact::{ContactPoint, Material, tangents};
 use crate::joined::Joined;
 use crate::pairs::Pair;
+use crate::quiet::Quiet;
 use crate::rigid_body::{RigidBody, Role, Target};
 use crate::{BodyId, Motion, Simulation, SimulationError, SimulationOptions};
 use d2m_bvh::{MeshTree, Solid};
@@ -146,8 +147,7 @@ struct BodyState {
     version: u64,
     has_flown: bool,
     asleep: bool,
-    quiet: f64,
-    slowest: f64,
+    quiet: Quiet,
     gained: f64,
 }
 
@@ -354,7 +354,6 @@ impl BodyState {
             has_flown: body.has_flown,
             asleep: body.asleep,
             quiet: body.quiet,
-            slowest: body.slowest,
             gained: body.gained,
         }
     }
@@ -392,7 +391,7 @@ impl BodyState {
         (body.force, body.torque) = (self.force, self.torque);
         body.horizon = self.horizon.unwrap_or(f64::INFINITY);
         (body.version, body.has_flown) = (self.version, self.has_flown);
-        (body.asleep, body.quiet, body.slowest) = (self.asleep, self.quiet, self.slowest);
+        (body.asleep, body.quiet) = (self.asleep, self.quiet);
         // It flies from where it is: what is checked is what the next step begins with. What no step moves stands still.
         let flight = if body.is_awake() { self.flight } else { FlightState::default() };
         body.flight = ConstantTwist::try_new(self.position, self.orientation, flight.linear, flight.angular)

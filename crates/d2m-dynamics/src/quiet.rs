@@ -1,0 +1,133 @@
+//! For how long a body has been quiet.
+
+use crate::SimulationOptions;
+use glam::{DQuat, DVec3};
+
+/// How long, in seconds of gravity's scale or plain units of time without gravity.
+pub(crate) const QUIET_TIME: f64 = 0.5;
+/// The part of the gap by which a surface may move in that time.
+const QUIET_WAY: f64 = 0.1;
+/// And among many bodies: of a heap at rest solutions move single bodies by up to a fifth of a gap in that time.
+const SHAKEN_WAY: f64 = 0.25;
+/// Of the speed of quiet bodies, the part that counts as standing still: what no friction brakes goes on at any other speed.
+const STILL: f64 = 1.0 / 1024.0;
+/// By how much more a body may be faster than it was in its quiet time.
+const GROWTH: f64 = 1.0625;
+
+/// What can be said of a body's rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rest {
+    /// No friction brakes it: it rests only where it stands still.
+    Unbraked,
+    /// By its speed: what a force speeds up is not at rest, however slow it is.
+    BySpeed,
+    /// By its way: among many bodies solutions shake it.
+    ByWay,
+}
+
+/// Since when, and where.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Quiet {
+    time: f64,
+    /// How fast its surface was at least in that time.
+    slowest: f64,
+    /// Where it was when that began.
+    position: DVec3,
+    orientation: DQuat,
+}
+
+/// Where a body's surface is after a step, and how fast in it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surface {
+    pub(crate) position: DVec3,
+    pub(crate) orientation: DQuat,
+    pub(crate) radius: f64,
+    pub(crate) speed: f64,
+}
+
+impl Quiet {
+    /// Has it been so for long enough?
+    pub(crate) fn is_long(&self) -> bool {
+        self.time >= QUIET_TIME
+    }
+
+    /// After a step of this length.
+    pub(crate) fn go_on(&mut self, surface: Surface, rest: Rest, step: f64, options: &SimulationOptions) {
+        let way = QUIET_WAY * options.gap;
+        let still = STILL * way / QUIET_TIME;
+        let steady = GROWTH * self.slowest + still;
+        let is_quiet = match rest {
+            Rest::Unbraked => surface.speed <= still.min(steady),
+            Rest::BySpeed => surface.speed <= (way / QUIET_TIME).min(steady),
+            Rest::ByWay => self.way_to(surface) <= SHAKEN_WAY * options.gap,
+        };
+        if is_quiet {
+            self.time += step;
+            self.slowest = self.slowest.min(surface.speed);
+        } else {
+            let Surface { position, orientation, speed, .. } = surface;
+            *self = Self { time: 0.0, slowest: speed, position, orientation };
+        }
+    }
+
+    /// How far a point of the surface has come at most.
+    fn way_to(&self, surface: Surface) -> f64 {
+        let turn = surface.orientation * self.orientation.conjugate();
+        // A chord: twice the sine of half of the angle.
+        let chord = 2.0 * DVec3::new(turn.x, turn.y, turn.z).length();
+        (surface.position - self.position).length() + chord * surface.radius
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps of a hundredth, each at this speed there and back: for how long the body has been quiet after the quiet time.
+    fn quiet_after(rest: Rest, part: f64, is_back_and_forth: bool) -> f64 {
+        let options = SimulationOptions::default();
+        let (way, step) = (QUIET_WAY * options.gap, 0.01);
+        let mut surface =
+            Surface { position: DVec3::X, orientation: DQuat::IDENTITY, radius: 1.0, speed: 0.0 };
+        let mut quiet = Quiet::default();
+        for k in 0..100 {
+            // Now a fifth of the speed, now all of it.
+            let speed = part * way / QUIET_TIME * if k % 2 == 0 { 0.2 } else { 1.0 };
+            let sign = if is_back_and_forth && k % 4 > 1 { -1.0 } else { 1.0 };
+            surface.position.x += sign * speed * step;
+            surface.speed = speed;
+            quiet.go_on(surface, rest, step, &options);
+        }
+        quiet.time
+    }
+
+    /// What solutions shake by three times the speed of quiet bodies is quiet by its way, and not by its speed; what goes on is not.
+    #[test]
+    fn what_is_shaken_among_many_is_quiet_by_its_way() {
+        assert!(quiet_after(Rest::ByWay, 3.0, true) > QUIET_TIME);
+        assert!(quiet_after(Rest::ByWay, 9.0, false) < QUIET_TIME);
+        for rest in [Rest::BySpeed, Rest::Unbraked] {
+            assert!(quiet_after(rest, 3.0, true) < 0.1 * QUIET_TIME);
+        }
+    }
+
+    /// What turns in place is not quiet.
+    #[test]
+    fn turns_are_ways() {
+        let options = SimulationOptions::default();
+        let at = |angle: f64| Surface {
+            position: DVec3::ZERO,
+            orientation: DQuat::from_rotation_z(angle),
+            radius: 2.0,
+            speed: 0.0,
+        };
+        let mut quiet = Quiet::default();
+        quiet.go_on(at(0.0), Rest::ByWay, 0.01, &options);
+        for (part, is_quiet) in [(0.4, true), (0.6, false)] {
+            let mut next = quiet;
+            next.go_on(at(part * SHAKEN_WAY * options.gap), Rest::ByWay, 0.01, &options);
+            assert_eq!(next.time > quiet.time, is_quiet, "{part}");
+        }
+    }
+}
