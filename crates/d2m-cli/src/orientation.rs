@@ -6,43 +6,79 @@ use serde_json::Value;
 /// Lengths of quaternions differ from one by this much when their numbers were written with seven digits.
 pub(crate) const WRITTEN: f64 = 1e-6;
 
-/// Warns of a quaternion `[w, x, y, z]` that is probably not what was meant.
-fn warn(place: &str, q: [f64; 4]) {
-    let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if q == [0.0, 0.0, 0.0, 1.0] {
-        note(&format!(
-            "d2m: warning: {place}: q = 0,0,0,1 is half a turn about z: w comes first, and no turn is q = 1,0,0,0"
-        ));
-    } else if (length - 1.0).abs() > WRITTEN && length > 0.0 {
-        note(&format!("d2m: warning: {place}: q = {q:?} has the length {length}, not 1; it is normalized"));
+/// What is doubtful of quaternions `[w, x, y, z]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Doubt {
+    /// The w was probably written last.
+    Order,
+    Length,
+}
+
+impl Doubt {
+    fn of(q: [f64; 4]) -> Option<Self> {
+        let length = length(q);
+        match q {
+            [0.0, 0.0, 0.0, 1.0] => Some(Self::Order),
+            _ => ((length - 1.0).abs() > WRITTEN && length > 0.0).then_some(Self::Length),
+        }
+    }
+}
+
+fn length(q: [f64; 4]) -> f64 {
+    q.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// One warning of each kind, of the first quaternion and of how many more there are.
+fn warn(place: &str, quaternions: &[[f64; 4]]) {
+    for doubt in [Doubt::Order, Doubt::Length] {
+        let mut doubtful = quaternions.iter().filter(|&&q| Doubt::of(q) == Some(doubt));
+        let Some(&q) = doubtful.next() else { continue };
+        let text = match doubt {
+            Doubt::Order => {
+                "q = 0,0,0,1 is half a turn about z: w comes first, and no turn is q = 1,0,0,0".to_owned()
+            }
+            Doubt::Length => format!("q = {q:?} has the length {}, not 1; it is normalized", length(q)),
+        };
+        let more = match doubtful.count() {
+            0 => String::new(),
+            more => format!(" ({more} more like it)"),
+        };
+        note(&format!("d2m: warning: {place}: {text}{more}"));
     }
 }
 
 /// Warns of the `q` of a motion's text.
 pub(crate) fn warn_of_text(place: &str, text: &str) {
     let parts = text.split(';').filter_map(|part| part.split_once('='));
-    for (_, value) in parts.filter(|(key, _)| key.trim() == "q") {
+    let quaternion = |value: &str| {
         let numbers: Vec<f64> = value.split(',').filter_map(|word| word.trim().parse().ok()).collect();
-        if let Ok(q) = numbers.try_into() {
-            warn(place, q);
-        }
-    }
+        numbers.try_into().ok()
+    };
+    let of_turns = parts.filter(|(key, _)| key.trim() == "q");
+    warn(place, &of_turns.filter_map(|(_, value)| quaternion(value)).collect::<Vec<_>>());
 }
 
-/// Warns of every doubtful `q` of a JSON form.
+/// Warns of the doubtful `q` of a JSON form.
 pub(crate) fn warn_of_json(place: &str, value: &Value) {
+    let mut found = Vec::new();
+    collect(value, &mut found);
+    warn(place, &found);
+}
+
+/// Every `q` of four numbers, in their order.
+fn collect(value: &Value, found: &mut Vec<[f64; 4]>) {
     match value {
         Value::Object(object) => {
             for (key, value) in object {
                 let numbers = value.as_array().filter(|_| key == "q");
                 let numbers = numbers.map(|list| list.iter().filter_map(Value::as_f64).collect::<Vec<_>>());
                 match numbers.and_then(|numbers| <[f64; 4]>::try_from(numbers).ok()) {
-                    Some(q) => warn(place, q),
-                    None => warn_of_json(place, value),
+                    Some(q) => found.push(q),
+                    None => collect(value, found),
                 }
             }
         }
-        Value::Array(list) => list.iter().for_each(|value| warn_of_json(place, value)),
+        Value::Array(list) => list.iter().for_each(|value| collect(value, found)),
         _ => {}
     }
 }

@@ -110,6 +110,13 @@ fn doubtful_turns_are_warned_of() {
         let run = d2m(&["toc", CUBE, CUBE, "--motion-a", quiet]);
         assert!(stderr(&run).is_empty(), "{quiet}: {}", stderr(&run));
     }
+    let list =
+        r#"{"times": [0, 1, 2], "poses": [{"q": [2, 0, 0, 0]}, {"q": [3, 0, 0, 0]}, {"q": [4, 0, 0, 0]}]}"#;
+    let list = folder.file("list.json", list);
+    let run = d2m(&["toc", CUBE, CUBE, "--motion-a", &format!("@{list}"), "--motion-b", "x=9,0,0"]);
+    let all = stderr(&run);
+    assert!(all.contains("has the length 2, not 1; it is normalized (2 more like it)"), "{all}");
+    assert_eq!(all.matches("warning").count(), 1, "{all}");
     let trials = folder.file("t.csv", "2,0,0,0,-3,0,0,4,0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0\n");
     let run = d2m(&["batch", CUBE, CUBE, "--trials", &trials, "--out", "-"]);
     assert!(
