@@ -277,6 +277,13 @@ pub struct Damping {
     pub angular: f64,
 }
 
+impl Damping {
+    /// By their names.
+    pub(crate) const fn rates(&self) -> [(&'static str, f64); 2] {
+        [("linear damping", self.linear), ("angular damping", self.angular)]
+    }
+}
+
 impl Body {
     /// A body with the defaults above.
     pub fn new(name: impl Into<String>, tree: Arc<MeshTree>) -> Self {

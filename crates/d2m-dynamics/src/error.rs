@@ -127,6 +127,18 @@ pub enum SimulationError {
         /// The refused value, as text.
         value: String,
     },
+    /// A number of what a snapshot keeps of a pair of bodies, as the impulse of a contact.
+    #[error("pair of {a} and {b}: {name} {value} cannot be used")]
+    BadPair {
+        /// The first body's name.
+        a: String,
+        /// The second body's name.
+        b: String,
+        /// Which part of it.
+        name: &'static str,
+        /// The refused value, as text.
+        value: String,
+    },
     /// Mass properties.
     #[error("body {body}: {error}")]
     Mass {

@@ -3,6 +3,7 @@
 use crate::SimulationError;
 use crate::contact::{ContactPoint, JointRow, Law, Material, tangents};
 use crate::joint::{Joint, JointKind, MotorTarget};
+use crate::numbers::is_small;
 use crate::rigid_body::RigidBody;
 use crate::turning::rotation_vector;
 use d2m_feature::FeaturePair;
@@ -47,15 +48,38 @@ impl Joined {
         let bad = |name: &'static str, value: String| {
             Err(SimulationError::BadJoint { a: a.name.to_string(), b: b.name.to_string(), name, value })
         };
+        Self::check_numbers(joint, [a, b])?;
         let axis = joint.axis.normalize_or_zero();
+        if places[0] == places[1] || !(a.is_dynamic() || b.is_dynamic()) {
+            return bad("pair", "two bodies, at least one of them dynamic, are asked for".to_owned());
+        }
+        let is_locked = matches!(joint.kind, JointKind::Locked { .. });
+        if is_locked && joint.b.is_some() {
+            return bad("second body", "of locks: only the world".to_owned());
+        }
+        let point = if is_locked { a.position } else { joint.point };
+        let own = |body: &RigidBody, v: DVec3| body.orientation.conjugate() * v;
+        Ok(Self {
+            joint: joint.clone(),
+            bodies: places,
+            arms: [own(a, point - a.position), own(b, point - b.position)],
+            axes: [own(a, axis), own(b, axis)],
+            turn: a.orientation.conjugate() * b.orientation,
+            value: 0.0,
+            is_gone: false,
+        })
+    }
+
+    /// The numbers of a joint of these bodies, given or read.
+    fn check_numbers(joint: &Joint, [a, b]: [&RigidBody; 2]) -> Result<(), SimulationError> {
+        let bad = |name: &'static str, value: String| {
+            Err(SimulationError::BadJoint { a: a.name.to_string(), b: b.name.to_string(), name, value })
+        };
         if !joint.point.is_finite() {
             return bad("point", joint.point.to_string());
         }
-        if !joint.axis.is_finite() || axis == DVec3::ZERO {
+        if !joint.axis.is_finite() || joint.axis.normalize_or_zero() == DVec3::ZERO {
             return bad("axis", joint.axis.to_string());
-        }
-        if places[0] == places[1] || !(a.is_dynamic() || b.is_dynamic()) {
-            return bad("pair", "two bodies, at least one of them dynamic, are asked for".to_owned());
         }
         if let Some(limits) = joint.limits.filter(|[lo, hi]| !(lo.is_finite() && hi.is_finite() && lo <= hi))
         {
@@ -84,20 +108,26 @@ impl Joined {
                 return bad(name, value.to_string());
             }
         }
-        let is_locked = matches!(joint.kind, JointKind::Locked { .. });
-        if is_locked && joint.b.is_some() {
-            return bad("second body", "of locks: only the world".to_owned());
-        }
-        let point = if is_locked { a.position } else { joint.point };
-        let own = |body: &RigidBody, v: DVec3| body.orientation.conjugate() * v;
-        Ok(Self {
-            joint: joint.clone(),
-            bodies: places,
-            arms: [own(a, point - a.position), own(b, point - b.position)],
-            axes: [own(a, axis), own(b, axis)],
-            turn: a.orientation.conjugate() * b.orientation,
-            value: 0.0,
-            is_gone: false,
+        Ok(())
+    }
+
+    /// Of a snapshot: is it a joint of these bodies? Both may be static by now.
+    pub(crate) fn check(&self, bodies: [&RigidBody; 2]) -> Result<(), SimulationError> {
+        let [a, b] = bodies;
+        Self::check_numbers(&self.joint, bodies)?;
+        let is_pair = a.id != b.id && self.joint.a == a.id && self.joint.b.is_none_or(|named| named == b.id);
+        let is_locked = matches!(self.joint.kind, JointKind::Locked { .. });
+        let fault = if !is_pair || (is_locked && self.joint.b.is_some()) {
+            Some(("pair", format!("{:?}", self.bodies)))
+        } else if !self.arms.iter().all(|arm| is_small(*arm)) {
+            Some(("arms", format!("{:?}", self.arms)))
+        } else if !(self.axes.iter().all(|axis| axis.is_normalized()) && self.turn.is_normalized()) {
+            Some(("axes", format!("{:?}, {}", self.axes, self.turn)))
+        } else {
+            (!is_small(DVec3::splat(self.value))).then(|| ("value", self.value.to_string()))
+        };
+        fault.map_or(Ok(()), |(name, value)| {
+            Err(SimulationError::BadJoint { a: a.name.to_string(), b: b.name.to_string(), name, value })
         })
     }
 

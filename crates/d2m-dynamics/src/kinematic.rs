@@ -1,7 +1,8 @@
 //! Bodies that follow a motion, as flights of constant twists that stay close to it.
 
 use crate::body::Kind;
-use crate::rigid_body::{LARGEST, RigidBody};
+use crate::numbers::LARGEST;
+use crate::rigid_body::RigidBody;
 use crate::turning::rotation_vector;
 use crate::velocity::Velocity;
 use crate::{SimulationError, StepError};

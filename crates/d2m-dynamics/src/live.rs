@@ -2,15 +2,12 @@
 
 use crate::body::{Damping, Groups, Kind};
 use crate::contact::Material;
+use crate::numbers::{Fault, material_fault};
 use crate::rigid_body::{RigidBody, Target};
-use crate::turning::rotation_vector;
 use crate::velocity::Velocity;
 use crate::{BodyId, Motion, Simulation, SimulationError};
 use d2m_motion::Pose;
 use glam::DVec3;
-
-/// A target turns a body by less than this in a step, so that the shortest way round is the one meant; below π, with room for rounding.
-const MOST_TURN: f64 = 3.0;
 
 impl Simulation {
     /// Puts the mesh frame of a dynamic or static body somewhere else, at once; its velocities stay what they are, and it is awake.
@@ -173,7 +170,7 @@ impl Simulation {
     /// If the body was removed.
     pub fn set_damping(&mut self, body: BodyId, damping: Damping) -> Result<(), SimulationError> {
         let place = self.place(body);
-        for (name, value) in [("linear damping", damping.linear), ("angular damping", damping.angular)] {
+        for (name, value) in damping.rates() {
             if !(value.is_finite() && value >= 0.0) {
                 return Err(SimulationError::BadOption { name, value, wanted: "not negative" });
             }
@@ -307,18 +304,8 @@ impl Simulation {
     pub fn set_target(&mut self, body: BodyId, pose: Pose) -> Result<(), SimulationError> {
         let place = self.place(body);
         let own = &self.bodies[place];
-        let bad =
-            |value: String| SimulationError::BadBody { body: own.name.to_string(), name: "target", value };
-        if !matches!(own.kind, Kind::Driven) {
-            return Err(bad(format!("{} of a body that is not driven", pose.translation)));
-        }
-        let target =
-            target(own, pose).filter(|to| own.moved(to.position, to.orientation, self.time).is_some());
-        let target = target.ok_or_else(|| bad(format!("{}, {}", pose.translation, pose.rotation)))?;
-        let turn = rotation_vector(target.orientation * own.orientation.conjugate()).length();
-        if turn.is_nan() || turn >= MOST_TURN {
-            return Err(SimulationError::TargetTooFast { body: own.name.to_string(), turn });
-        }
+        let target = target(own, pose).ok_or_else(|| own.bad_target(&pose))?;
+        own.check_target(target, self.time)?;
         self.bodies[place].target = Some(target);
         Ok(())
     }
@@ -414,15 +401,9 @@ impl Simulation {
 }
 
 fn check_material(restitution: f64, friction: f64) -> Result<(), SimulationError> {
-    if !(0.0..=1.0).contains(&restitution) {
-        let (name, value) = ("restitution", restitution);
-        return Err(SimulationError::BadOption { name, value, wanted: "in [0, 1]" });
-    }
-    if !(friction.is_finite() && friction >= 0.0) {
-        let (name, value) = ("friction", friction);
-        return Err(SimulationError::BadOption { name, value, wanted: "not negative" });
-    }
-    Ok(())
+    material_fault(restitution, friction).map_or(Ok(()), |Fault { name, value, wanted }| {
+        Err(SimulationError::BadOption { name, value, wanted })
+    })
 }
 
 /// Where a pose of the mesh frame has the center and the axes of a body; none: numbers that are none.

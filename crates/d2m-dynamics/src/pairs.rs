@@ -86,17 +86,23 @@ pub(crate) struct Pair {
     /// About how far apart the bodies were when measured last: at least so far, to rounding.
     pub(crate) apart: f64,
     /// When a proof from an axis is tried.
-    axes: Attempts,
+    pub(crate) axes: Attempts,
 }
 
 /// What is tried again after as many flights as it has failed in a row.
-#[derive(Clone, Copy, Debug, Default)]
-struct Attempts {
-    failed: u32,
-    wait: u32,
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Attempts {
+    pub(crate) failed: u32,
+    pub(crate) wait: u32,
 }
 
 impl Attempts {
+    /// Are these numbers that counting comes to?
+    pub(crate) fn is_counted(self) -> bool {
+        self.failed.max(self.wait) <= MOST_WAITING
+    }
+
     fn is_due(&mut self) -> bool {
         let is_due = self.wait == 0;
         self.wait = self.wait.saturating_sub(1);

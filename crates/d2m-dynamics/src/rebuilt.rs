@@ -4,11 +4,15 @@ use crate::SimulationError;
 use crate::body::{Body, Kind, Presence};
 use crate::faces::Faces;
 use crate::quiet::Quiet;
-use crate::rigid_body::{RigidBody, Role, rest};
+use crate::rigid_body::{RigidBody, Role, Target, rest};
+use crate::turning::rotation_vector;
 use crate::velocity::Velocity;
 use d2m_bvh::{MeshTree, TriMesh};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
+
+/// A target turns a body by less than this in a step, so that the shortest way round is the one meant; below π, with room for rounding.
+const MOST_TURN: f64 = 3.0;
 
 impl RigidBody {
     /// Somewhere else, at rest until its next flight, with the velocities that it has. None: numbers that are too large.
@@ -20,6 +24,25 @@ impl RigidBody {
             moved.set_velocity(Velocity { linear: self.velocity().linear, angular });
         }
         Some(moved)
+    }
+
+    /// May the body be sent there in a step from a time?
+    pub(crate) fn check_target(&self, target: Target, time: f64) -> Result<(), SimulationError> {
+        let is_driven = matches!(self.kind, Kind::Driven);
+        if !is_driven || self.moved(target.position, target.orientation, time).is_none() {
+            return Err(self.bad_target(&target));
+        }
+        let turn = rotation_vector(target.orientation * self.orientation.conjugate()).length();
+        if turn.is_nan() || turn >= MOST_TURN {
+            return Err(SimulationError::TargetTooFast { body: self.name.to_string(), turn });
+        }
+        Ok(())
+    }
+
+    pub(crate) fn bad_target(&self, target: &impl core::fmt::Debug) -> SimulationError {
+        let kind = if matches!(self.kind, Kind::Driven) { "" } else { " of a body that is not driven" };
+        let value = format!("{target:?}{kind}");
+        SimulationError::BadBody { body: self.name.to_string(), name: "target", value }
     }
 
     /// Momenta of these velocities, of a dynamic body.

@@ -4,6 +4,7 @@ use crate::body::{Body, BodyId, Damping, Groups, Kind, Mass, Presence};
 use crate::faces::Faces;
 use crate::hollow::{bores, cavity};
 use crate::momenta::Momenta;
+use crate::numbers::{Numbers, is_small};
 use crate::quiet::Quiet;
 use crate::turning::{Pull, extreme_eigenvalues};
 use crate::velocity::Velocity;
@@ -17,8 +18,6 @@ use std::sync::Arc;
 /// How far the axes of a body are followed, of how far it reaches.
 pub(crate) const AXES_REACH: f64 = 1.0625;
 
-/// No momentum, angular momentum or velocity of a body may exceed this: their products are still numbers.
-pub(crate) const LARGEST: f64 = 1e100;
 /// What a tumbling body turns in one flight at most, in radians, times how far its moments of inertia are apart. The midpoint rule is the
 /// geodesic one: reversible, so its energy oscillates and does not drift; the middle of a flight is off the motion of a free top by
 /// h² |ω'|/8 at most, and |ω'| ≤ κ ω² with κ = 1 − I₁/I₃, so the energy by (κ ω h)²/8 of itself: 2⁻¹¹ for a sixteenth.
@@ -145,30 +144,20 @@ impl RigidBody {
             ("angular velocity", body.angular_velocity),
             ("surface velocity", body.surface_velocity),
         ];
-        if let Some((name, value)) = vectors.into_iter().find(|(_, v)| !v.is_finite()) {
-            return Err(bad(name, value.to_string()));
-        }
+        let [linear, angular] = body.damping.rates();
+        let numbers = Numbers {
+            body: &body.name,
+            vectors: &vectors,
+            orientation: body.orientation,
+            restitution: body.restitution,
+            friction: body.friction,
+            not_negative: &[("radius", body.radius), linear, angular],
+        };
+        numbers.check()?;
         let given = vectors[1..3].iter().find(|(_, v)| *v != DVec3::ZERO);
         if let (Kind::Static | Kind::Kinematic(_) | Kind::Driven, Some(&(name, value))) = (&body.kind, given)
         {
             return Err(SimulationError::VelocityWithoutMotion { body: body.name.clone(), name, value });
-        }
-        let q = body.orientation;
-        let norm = q.length();
-        if !(norm.is_finite() && norm > 0.0) {
-            return Err(bad("orientation", q.to_string()));
-        }
-        if !(0.0..=1.0).contains(&body.restitution) {
-            return Err(bad("restitution", body.restitution.to_string()));
-        }
-        if !(body.friction.is_finite() && body.friction >= 0.0) {
-            return Err(bad("friction", body.friction.to_string()));
-        }
-        let rates = [("linear damping", body.damping.linear), ("angular damping", body.damping.angular)];
-        for (name, value) in [("radius", body.radius)].into_iter().chain(rates) {
-            if !(value.is_finite() && value >= 0.0) {
-                return Err(bad(name, value.to_string()));
-            }
         }
         let mesh = body.tree.mesh();
         let given = |error| SimulationError::Mass { body: body.name.clone(), error };
@@ -200,7 +189,7 @@ impl RigidBody {
                 let (pose, _) = covered.motion().pose_and_twist(time);
                 (pose.transform_point(DVec3::ZERO), pose.rotation.normalize())
             }
-            _ => (body.position, q.normalize()),
+            _ => (body.position, body.orientation.normalize()),
         };
         let position = mesh_position + orientation * center;
         let (mass, inertia) = properties.map_or((0.0, DMat3::ZERO), |p| (p.mass, p.inertia));
@@ -259,13 +248,12 @@ impl RigidBody {
     }
 
     /// Two additions to the momenta, linear and angular, by their names: refused if they are not finite, or if the body would have
-    /// momenta or velocities above [`Simulation::LARGEST`](LARGEST).
+    /// momenta or velocities above [`Simulation::LARGEST`](crate::Simulation::LARGEST).
     pub(crate) fn check_momenta(
         &self,
         names: [&'static str; 2],
         [linear, angular]: [DVec3; 2],
     ) -> Result<(), SimulationError> {
-        let is_small = |v: DVec3| v.abs().max_element() <= LARGEST;
         // Also what is not a number is refused.
         let refuse = |name: &'static str, value: DVec3| {
             Err(SimulationError::TooLarge { body: self.name.to_string(), name, value })

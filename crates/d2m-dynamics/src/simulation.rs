@@ -3,9 +3,10 @@
 use crate::contact::Material;
 use crate::joined::Joined;
 use crate::neighbors::Neighbors;
+use crate::numbers::LARGEST;
 use crate::pairs::Pair;
 use crate::record::Recorder;
-use crate::rigid_body::{LARGEST, RigidBody, Role};
+use crate::rigid_body::{RigidBody, Role};
 use crate::{
     Body, BodyId, ContactImpulse, Kind, MassProperties, Segment, SimulationError, SimulationOptions,
     TouchEvent,

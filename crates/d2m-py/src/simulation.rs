@@ -26,9 +26,9 @@ impl From<SimulationError> for Fault {
         let fault = Self::new(error.to_string());
         match error {
             SimulationError::BadOption { value, .. } => fault.found(value),
-            SimulationError::BadBody { value, .. } | SimulationError::BadJoint { value, .. } => {
-                fault.with_value(Value::Text(value))
-            }
+            SimulationError::BadBody { value, .. }
+            | SimulationError::BadJoint { value, .. }
+            | SimulationError::BadPair { value, .. } => fault.with_value(Value::Text(value)),
             SimulationError::TooLarge { value, .. }
             | SimulationError::VelocityWithoutMotion { value, .. } => {
                 fault.with_value(Value::Numbers(value.to_array().to_vec()))

@@ -1,0 +1,77 @@
+//! Which numbers of bodies can be used, whether they are given or read.
+
+use crate::SimulationError;
+use glam::{DQuat, DVec3};
+
+/// No momentum, angular momentum or velocity of a body may exceed this: their products are still numbers.
+pub(crate) const LARGEST: f64 = 1e100;
+/// What the square of a unit vector's length may be off: a root, four products and three sums make it one, and a rotation, of fewer than 32
+/// operations of relative error 2⁻⁵³ each, turns it. Half of that in its length is less than bounds of flights allow for.
+const UNIT: f64 = 32.0 * f64::EPSILON;
+
+/// Numbers of a body.
+pub(crate) struct Numbers<'n> {
+    /// The body's name.
+    pub(crate) body: &'n str,
+    pub(crate) vectors: &'n [(&'static str, DVec3)],
+    /// Any norm but zero.
+    pub(crate) orientation: DQuat,
+    pub(crate) restitution: f64,
+    pub(crate) friction: f64,
+    pub(crate) not_negative: &'n [(&'static str, f64)],
+}
+
+impl Numbers<'_> {
+    pub(crate) fn check(&self) -> Result<(), SimulationError> {
+        let bad = |name: &'static str, value: String| {
+            Err(SimulationError::BadBody { body: self.body.to_owned(), name, value })
+        };
+        if let Some((name, value)) = self.vectors.iter().find(|(_, v)| !v.is_finite()) {
+            return bad(name, value.to_string());
+        }
+        let norm = self.orientation.length();
+        if !(norm.is_finite() && norm > 0.0) {
+            return bad("orientation", self.orientation.to_string());
+        }
+        if let Some(Fault { name, value, .. }) = material_fault(self.restitution, self.friction) {
+            return bad(name, value.to_string());
+        }
+        for (name, value) in self.not_negative {
+            if !(value.is_finite() && *value >= 0.0) {
+                return bad(name, value.to_string());
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What cannot be used.
+pub(crate) struct Fault {
+    pub(crate) name: &'static str,
+    pub(crate) value: f64,
+    pub(crate) wanted: &'static str,
+}
+
+/// A restitution outside [0, 1], a friction that is negative or not finite.
+pub(crate) fn material_fault(restitution: f64, friction: f64) -> Option<Fault> {
+    if !(0.0..=1.0).contains(&restitution) {
+        return Some(Fault { name: "restitution", value: restitution, wanted: "in [0, 1]" });
+    }
+    let is_friction = friction.is_finite() && friction >= 0.0;
+    (!is_friction).then_some(Fault { name: "friction", value: friction, wanted: "not negative" })
+}
+
+/// Is it finite, and no component greater than [`LARGEST`]?
+pub(crate) fn is_small(v: DVec3) -> bool {
+    v.is_finite() && v.abs().max_element() <= LARGEST
+}
+
+/// Of length one, to rounding.
+pub(crate) fn is_unit(v: DVec3) -> bool {
+    (v.length_squared() - 1.0).abs() <= UNIT
+}
+
+/// A quaternion of norm one, to rounding.
+pub(crate) fn is_turn(q: DQuat) -> bool {
+    (q.length_squared() - 1.0).abs() <= UNIT
+}
