@@ -2,6 +2,7 @@
 use super::parts::{figure, round};
 use super::text;
 use crate::bench::Store;
+use crate::machine::Machine;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -9,6 +10,8 @@ type Error = Box<dyn std::error::Error>;
 
 const TABLE: &str = "dynamics.csv";
 const FIGURE: &str = "dynamics.svg";
+/// On what, and on which code: simulations are measured apart from queries.
+const MEASURED_ON: &str = "dynamics-measured-on.json";
 
 /// One simulation by one program.
 #[derive(Debug, PartialEq)]
@@ -72,9 +75,9 @@ impl<'t> Row<'t> {
 /// Takes table and figure over as they are.
 pub(super) fn collect(store: &Store, folder: &Path) -> Result<(), Error> {
     let Some(dynamics) = store.folder.parent().map(|parent| parent.join("dynamics")) else { return Ok(()) };
-    for name in [TABLE, FIGURE] {
-        if dynamics.join(name).exists() {
-            std::fs::copy(dynamics.join(name), folder.join(name))?;
+    for (from, to) in [(TABLE, TABLE), (FIGURE, FIGURE), ("measured-on.json", MEASURED_ON)] {
+        if dynamics.join(from).exists() {
+            std::fs::copy(dynamics.join(from), folder.join(to))?;
         }
     }
     Ok(())
@@ -97,6 +100,12 @@ pub(super) fn write(page: &mut String, folder: &Path) -> Result<(), Error> {
         bodies never intersect either, takes seconds to minutes a step (Ferguson et al. 2021, doi:10.1145/3450626.3459802); it was not run \
         here. All columns: [{TABLE}]({name}/{TABLE}).\n",
     )?;
+    if let Ok(machine) = serde_json::from_str::<Machine>(&text(folder, MEASURED_ON)) {
+        let Machine { rustc, commit, commit_date, .. } = &machine;
+        let load =
+            machine.load.map_or(String::new(), |load| format!(", load average {load:.1} when it began"));
+        writeln!(page, "Commit {commit} of {commit_date}, {rustc}{load}.\n")?;
+    }
     writeln!(
         page,
         "| scene | by | threads | CPU, s | times real time | median step, µs | worst, µs | pairs that intersect | skipped, s | judged | asked |"
