@@ -26,10 +26,6 @@ impl Simulation {
             if !body.is_dynamic() || body.asleep {
                 continue;
             }
-            if body.held {
-                body.quiet = Quiet::default();
-                continue;
-            }
             let rest = match (rubs, is_crowd) {
                 (false, _) => Rest::Unbraked,
                 (true, false) => Rest::BySpeed,
