@@ -7,6 +7,7 @@ use d2m_bvh::{
     Clearance, ClearanceOptions, ClearanceStatus, DistanceOptions, Meter, Moving, Posed, QueryError, Solid,
     Window, clearance, distance_within,
 };
+use d2m_mesh::parallel::map_in_order;
 use std::collections::HashSet;
 
 /// Times at which the pairs' distances are estimated for the order in which they are searched.
@@ -68,7 +69,6 @@ pub struct PairDistance {
 ///
 /// ```
 /// use d2m_bvh::{ClearanceOptions, MeshTree, Moving, Window};
-use d2m_mesh::parallel::map_in_order;
 /// use d2m_motion::{ConstantTwist, Keyframes, Pose, Span};
 /// use d2m_world::PairsOfBodies;
 /// let cube = MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?);

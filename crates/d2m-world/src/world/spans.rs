@@ -6,6 +6,7 @@ use super::{BodyId, PlannedMotion, World, WorldError};
 use crate::batches::PAIRS;
 use crate::box_tree::IndexPair;
 use d2m_bvh::{ContactSpan, SpanStatus, Start, Window, contact_spans};
+use d2m_mesh::parallel::map_in_order;
 
 /// The spans of two bodies of a world.
 ///
@@ -147,7 +148,6 @@ impl World {
 ///
 /// ```
 /// use d2m_bvh::{SpanStatus, Window};
-use d2m_mesh::parallel::map_in_order;
 /// let nothing_meets = d2m_world::join_spans(Window::UNIT, &[]);
 /// assert_eq!((nothing_meets.len(), nothing_meets[0].status), (1, SpanStatus::Clear));
 /// ```
