@@ -1,4 +1,4 @@
-//! What a robot is asked of its paths and edges.
+//! Questions about the paths and edges of a robot.
 
 use crate::arrays::Doubles;
 use crate::fault::{Fault, OrRaise, Value};

@@ -1,4 +1,4 @@
-//! One question of an audit, and how it is asked.
+//! One question of an audit, put in every way that there is.
 use d2m::audit::Auditor;
 use d2m::bvh::{ClearanceOptions, clearance, contact_spans, departure};
 use d2m::{Budget, MeshTree, Moving, QueryOptions, Solid, TriMesh, Window, time_of_contact};
