@@ -202,14 +202,15 @@ impl Problem<'_> {
         };
         for _ in 0..MOST_HALVINGS {
             let is_met = tried.found.missed <= OFF_JOINT * self.speed();
-            let before = gained(&tried, end);
-            if is_met && !(is_of_joints && before.is_much()) {
+            let before = is_of_joints.then(|| gained(&tried, end)).filter(|gained| gained.is_much());
+            if is_met && before.is_none() {
                 break;
             }
             let half = now + 0.5 * (end - now);
             let shorter = self.attempt(now, half, Room::Kept);
             // What shorter flights gain as well comes from elsewhere.
-            if is_met && gained(&shorter, half).energy > LESS * before.energy {
+            let gains_as_much = |before: Gained| gained(&shorter, half).energy > LESS * before.energy;
+            if is_met && before.is_some_and(gains_as_much) {
                 break;
             }
             (end, tried) = (half, shorter);
