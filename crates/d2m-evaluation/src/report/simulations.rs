@@ -9,6 +9,8 @@ use std::path::Path;
 type Error = Box<dyn std::error::Error>;
 
 const TABLE: &str = "dynamics.csv";
+/// Rows of a peer outside of Rust, which `peers/mujoco_scenes.py` writes beside the table.
+const PEER_TABLE: &str = "mujoco.csv";
 const FIGURE: &str = "dynamics.svg";
 /// On what, and on which code: simulations are measured apart from queries.
 const MEASURED_ON: &str = "dynamics-measured-on.json";
@@ -72,13 +74,37 @@ impl<'t> Row<'t> {
     }
 }
 
-/// Takes table and figure over as they are.
+/// The table with the peer's rows, each after that of the first program on its scene. Rows of other columns, or of scenes that are not in the
+/// table, are left out.
+fn with_peer(table: &str, peer: &str) -> String {
+    let (header, rows) = peer.split_once('\n').unwrap_or_default();
+    if table.lines().next() != Some(header) {
+        return table.into();
+    }
+    let scene = |row: &str| row.split(',').next().map(str::to_owned);
+    let mut left: Vec<&str> = rows.lines().collect();
+    let mut text = String::new();
+    for line in table.lines() {
+        let found = left.iter().position(|row| scene(row) == scene(line));
+        for line in [Some(line), found.map(|k| left.remove(k))].into_iter().flatten() {
+            text += line;
+            text.push('\n');
+        }
+    }
+    text
+}
+
+/// Takes table and figure over; the table with the rows of the peer, if there are any.
 pub(super) fn collect(store: &Store, folder: &Path) -> Result<(), Error> {
     let Some(dynamics) = store.folder.parent().map(|parent| parent.join("dynamics")) else { return Ok(()) };
-    for (from, to) in [(TABLE, TABLE), (FIGURE, FIGURE), ("measured-on.json", MEASURED_ON)] {
+    for (from, to) in [(FIGURE, FIGURE), ("measured-on.json", MEASURED_ON)] {
         if dynamics.join(from).exists() {
             std::fs::copy(dynamics.join(from), folder.join(to))?;
         }
+    }
+    if dynamics.join(TABLE).exists() {
+        let table = with_peer(&text(&dynamics, TABLE), &text(&dynamics, PEER_TABLE));
+        std::fs::write(folder.join(TABLE), table)?;
     }
     Ok(())
 }
@@ -96,7 +122,9 @@ pub(super) fn write(page: &mut String, folder: &Path) -> Result<(), Error> {
         page,
         "From `cargo xtask bench dynamics --full`: 64 steps a second, 100 of joints, fast gears and dolls; each run is judged (nothing skipped, \
         no energy gained, all bodies apart at the end) before its time counts. rapier steps boxes as its cuboids and all else as the same \
-        triangles, and lets bodies penetrate: how many pairs intersect at the end is found by our static query for both. rigid-ipc, whose \
+        triangles, and lets bodies penetrate: how many pairs intersect at the end is found by our static query for both. MuJoCo, if \
+        `peers/mujoco_scenes.py` was run, steps the scenes of boxes with the options that it comes with (it takes other meshes for their \
+        convex hulls); its pairs are counted by separating axes. rigid-ipc, whose \
         bodies never intersect either, takes seconds to minutes a step (Ferguson et al. 2021, doi:10.1145/3450626.3459802); it was not run \
         here. All columns: [{TABLE}]({name}/{TABLE}).\n",
     )?;
@@ -131,7 +159,17 @@ pub(super) fn write(page: &mut String, folder: &Path) -> Result<(), Error> {
 
 #[cfg(test)]
 mod tests {
-    use super::Row;
+    use super::{Row, with_peer};
+
+    #[test]
+    fn rows_of_the_peer_stand_after_the_first_of_their_scene() {
+        let table = "scene,by,fault\na,rapier,\na,d2m,\nb,rapier,\nb,d2m,\n";
+        let peer = "scene,by,fault\nb,MuJoCo,late\nc,MuJoCo,\n";
+        let merged = "scene,by,fault\na,rapier,\na,d2m,\nb,rapier,\nb,MuJoCo,late\nb,d2m,\n";
+        assert_eq!(with_peer(table, peer), merged);
+        assert_eq!(with_peer(table, "scene,by\nb,MuJoCo\n"), table);
+        assert_eq!(with_peer(table, ""), table);
+    }
 
     #[test]
     fn columns_are_found_by_their_names() {

@@ -5,6 +5,7 @@ mod judge;
 mod measure;
 mod peer;
 mod scene;
+mod scene_file;
 mod table;
 
 use crate::TaskResult;
@@ -59,11 +60,13 @@ impl Job {
         Self { is_compared: true, ..Self::new(name, &[1], build) }
     }
 
-    /// All runs of the scene, rapier's first; each is printed.
-    fn run(&self) -> Result<Vec<Run>, Error> {
+    /// All runs of the scene, rapier's first; each is printed. Scenes that are compared are written to files, for peers outside of Rust.
+    fn run(&self, files: &Path) -> Result<Vec<Run>, Error> {
         let mut rows = Vec::new();
         if self.is_compared {
-            rows.push(measure::run_peer(&(self.build)()?)?);
+            let scene = (self.build)()?;
+            scene_file::write(&scene, files)?;
+            rows.push(measure::run_peer(&scene)?);
             println!("{}", table::line(&rows[0]));
         }
         for &threads in self.threads {
@@ -126,7 +129,7 @@ pub(super) fn run(extent: Extent, wanted: &[String]) -> TaskResult {
         |job: &Job| wanted.is_empty() || wanted.iter().any(|part| job.name.contains(part.as_str()));
     let mut rows = Vec::new();
     for job in jobs(extent).iter().filter(|job| is_wanted(job)) {
-        rows.extend(job.run()?);
+        rows.extend(job.run(&folder.join("scenes"))?);
     }
     if rows.is_empty() {
         return Err("no such scene".into());
