@@ -77,15 +77,23 @@ impl Entry {
     }
 }
 
-/// What each velocity lacks to that of one rigid body with the same momenta; of a body at rest if the island is `anchored` to
-/// what impulses do not move.
-fn towards_rigid(entries: &[Entry], anchored: bool) -> Vec<Velocity> {
+/// What an island's bodies are braked against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Anchor {
+    /// Each other.
+    Bodies,
+    /// What impulses do not move, at rest.
+    World,
+}
+
+/// What each velocity lacks to that of one rigid body with the same momenta; of a body at rest if the island is anchored to the world.
+fn towards_rigid(entries: &[Entry], anchor: Anchor) -> Vec<Velocity> {
     let velocity = |e: &Entry| Velocity {
         linear: (e.after.linear + e.force * e.lead) / e.mass,
         angular: e.inverse_inertia * (e.after.angular + e.torque * e.lead),
     };
     let velocities: Vec<Velocity> = entries.iter().map(velocity).collect();
-    if anchored {
+    if anchor == Anchor::World {
         return velocities.into_iter().map(Neg::neg).collect();
     }
     let mass: f64 = entries.iter().map(|e| e.mass).sum();
@@ -103,9 +111,9 @@ fn towards_rigid(entries: &[Entry], anchored: bool) -> Vec<Velocity> {
     entries.iter().zip(velocities).map(|(e, v)| rigid(e) - v).collect()
 }
 
-/// Takes the least part of the velocities against each other, or against what the island is `anchored` to, that leaves no more
+/// Takes the least part of the velocities against each other, or against what the island is anchored to, that leaves no more
 /// in the accounts than they may hold, and where that is not enough of the room that is made. `length`: of the flight.
-pub(crate) fn balance(entries: &[Entry], anchored: bool, length: f64) -> Balance {
+pub(crate) fn balance(entries: &[Entry], anchor: Anchor, length: f64) -> Balance {
     let sum = |value: &dyn Fn(&Entry) -> f64| entries.iter().map(value).sum::<f64>();
     let (before, after) = (sum(&|e| e.kinetic(&e.before)), sum(&|e| e.kinetic(&e.after)));
     let lift = sum(&|e| e.lift(length));
@@ -116,7 +124,7 @@ pub(crate) fn balance(entries: &[Entry], anchored: bool, length: f64) -> Balance
     if excess.is_nan() || excess <= 0.0 {
         return Balance { braking: None, part: 1.0, gained, limit };
     }
-    let towards = towards_rigid(entries, anchored);
+    let towards = towards_rigid(entries, anchor);
     // A part s of the way adds s b + s² a.
     let (mut a, mut b) = (0.0, 0.0);
     for (e, d) in entries.iter().zip(&towards) {
@@ -190,7 +198,7 @@ mod tests {
             let at = |n: u32| f64::from((k * 37 + n * 61) % 101) / 50.0 - 1.0;
             let entries = pair(DVec3::new(at(1), at(2), at(3)) * 4.0);
             let [before, after] = [entries.map(|e| e.before), entries.map(|e| e.after)];
-            let balance = balance(&entries, false, 0.01);
+            let balance = balance(&entries, Anchor::Bodies, 0.01);
             if energy(&entries, &after) <= energy(&entries, &before) {
                 assert_eq!(balance.braking, None);
                 continue;
@@ -211,7 +219,7 @@ mod tests {
     fn accounts_are_paid_from_velocities_against_each_other() {
         let mut entries = pair(DVec3::ZERO);
         (entries[0].gained, entries[0].limit) = (0.15, 0.1);
-        let balance = balance(&entries, false, 0.01);
+        let balance = balance(&entries, Anchor::Bodies, 0.01);
         let end = braked(&entries, &balance);
         let taken = energy(&entries, &entries.map(|e| e.before)) - energy(&entries, &end);
         assert!((taken - 0.05).abs() < 1e-9 && (balance.gained - 0.1).abs() < 1e-9, "{taken}");
@@ -227,7 +235,7 @@ mod tests {
         one.room.linear = DVec3::Y * 0.1;
         // 0.1 for 0.01 s is a lift by 1e-3, which costs 0.02.
         one.limit = 0.015;
-        let balance = balance(&[one], true, 0.01);
+        let balance = balance(&[one], Anchor::World, 0.01);
         assert!((balance.part - 0.75).abs() < 1e-9, "{balance:?}");
         assert!(braked(&[one], &balance)[0].linear.distance(one.after.linear) < 1e-12);
     }

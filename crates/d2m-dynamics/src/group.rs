@@ -1,7 +1,7 @@
 //! Bodies that are in contact with each other, and the velocities of their next flights.
 
 use crate::SimulationOptions;
-use crate::account::{Entry, balance};
+use crate::account::{Anchor, Entry, balance};
 use crate::attempt::{Clock, Problem};
 use crate::contact::{Company, ContactPoint, HIT, Span, System, add, impact};
 use crate::joined::Joined;
@@ -132,9 +132,9 @@ pub(crate) fn solve(
     let outcomes: Vec<Outcome<'_>> = (0..states.len()).filter(|&k| moves(&states[k])).map(outcome).collect();
     // Bodies that follow their motions may work.
     let anchor = match (driven, outcomes.len() < states.len()) {
-        (true, _) => Anchor::Driven,
-        (false, true) => Anchor::Still,
-        (false, false) => Anchor::None,
+        (true, _) => None,
+        (false, true) => Some(Anchor::World),
+        (false, false) => Some(Anchor::Bodies),
     };
     Solved { bodies: settle(&outcomes, anchor, end, span, options), impacts: hits, rests: kept, residual }
 }
@@ -187,19 +187,10 @@ struct Outcome<'s> {
     lead: f64,
 }
 
-/// What an island is in contact with besides the bodies that impulses move.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Anchor {
-    None,
-    Still,
-    /// Bodies that follow their motions.
-    Driven,
-}
-
-/// Balances the accounts of energy: the velocities of the flights until `end`.
+/// Balances the accounts of energy, where nothing works (`anchor`): the velocities of the flights until `end`.
 fn settle(
     outcomes: &[Outcome<'_>],
-    anchor: Anchor,
+    anchor: Option<Anchor>,
     end: f64,
     span: Span,
     options: &SimulationOptions,
@@ -220,8 +211,7 @@ fn settle(
     };
     let entries: Vec<Entry> = outcomes.iter().map(entry).collect();
     let mass: f64 = entries.iter().map(|e| e.mass).sum();
-    let sheet =
-        (anchor != Anchor::Driven).then(|| balance(&entries, anchor == Anchor::Still, span.remaining));
+    let sheet = anchor.map(|anchor| balance(&entries, anchor, span.remaining));
     let push = |(place, (o, e)): (usize, (&Outcome<'_>, &Entry))| {
         let mut push = Push {
             body: o.body,

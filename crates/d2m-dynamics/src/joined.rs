@@ -230,9 +230,9 @@ impl Joined {
     }
 
     /// Turns about a single locked axis: a rate, and no place that it could drift from.
-    fn is_of_a_rate(&self, is_angular: bool) -> bool {
+    fn is_of_a_rate(&self, row: &JointRow) -> bool {
         let is_one = |turns: BVec3| turns.bitmask().is_power_of_two();
-        matches!(self.joint.kind, JointKind::Locked { turns, .. } if is_angular && is_one(turns))
+        matches!(self.joint.kind, JointKind::Locked { turns, .. } if row.is_angular && is_one(turns))
     }
 
     /// What the equations may be off at the end of a flight from here.
@@ -255,17 +255,18 @@ impl Joined {
         } else {
             made.arms[0] = arms[0] + (points[1] - points[0]);
         }
-        let equal = Law::Range { lo: f64::NEG_INFINITY, hi: f64::INFINITY, softness: 0.0 };
+        let law = Law::Range { lo: f64::NEG_INFINITY, hi: f64::INFINITY, softness: 0.0 };
+        let equal = JointRow { is_angular: false, law, pushing: 0.0, target: 0.0, equation: None };
         let (linear, angular) = self.directions(pair[0].orientation);
         for direction in linear {
-            made.add(direction, false, equal, 0.0, 0.0);
+            made.add(direction, equal);
         }
         for direction in angular {
-            made.add(direction, true, equal, 0.0, 0.0);
+            made.add(direction, JointRow { is_angular: true, ..equal });
         }
         let count = made.rows.len();
         for (slot, row) in made.rows[..count].iter_mut().enumerate() {
-            let equation = |row: &JointRow| (!self.is_of_a_rate(row.is_angular)).then_some([number, slot]);
+            let equation = |row: &JointRow| (!self.is_of_a_rate(row)).then_some([number, slot]);
             row.row = row.row.map(|row| JointRow { equation: equation(&row), ..row });
         }
         if matches!(self.joint.kind, JointKind::Revolute | JointKind::Prismatic) {
@@ -276,13 +277,20 @@ impl Joined {
 
     /// Limits, spring, motor and friction of the value.
     fn along(&self, made: &mut Made<'_>, axis: DVec3, value: f64, ahead: Ahead) {
-        let is_angle = self.joint.kind == JointKind::Revolute;
+        let is_angular = self.joint.kind == JointKind::Revolute;
+        let row = |law: Law, pushing: f64, target: f64| JointRow {
+            is_angular,
+            law,
+            pushing,
+            target,
+            equation: None,
+        };
         let h = ahead.length;
         if let Some([lo, hi]) = self.joint.limits {
             let push = Law::Range { lo: 0.0, hi: f64::INFINITY, softness: 0.0 };
             for (direction, room) in [(axis, value - lo), (-axis, hi - value)] {
                 let target = if room >= 0.0 { -room / h } else { -TAKEN_BACK * room / ahead.step };
-                made.add(direction, is_angle, push, target.min(0.0), target);
+                made.add(direction, row(push, target.min(0.0), target));
             }
         }
         if !ahead.forces {
@@ -295,7 +303,7 @@ impl Joined {
         };
         if let Some(spring) = self.joint.spring.filter(|spring| spring.stiffness + spring.damping > 0.0) {
             let (law, rate) = soft(spring.stiffness, spring.damping, spring.rest - value, f64::INFINITY);
-            made.add(axis, is_angle, law, rate, rate);
+            made.add(axis, row(law, rate, rate));
         }
         if let Some(motor) = self.joint.motor {
             let most = motor.most;
@@ -307,11 +315,11 @@ impl Joined {
                 }
                 MotorTarget::Position(place) => (hard, TAKEN_BACK * (place - value) / ahead.step),
             };
-            made.add(axis, is_angle, law, rate, rate);
+            made.add(axis, row(law, rate, rate));
         }
         if self.joint.friction > 0.0 {
             let most = self.joint.friction * h;
-            made.add(axis, is_angle, Law::Range { lo: -most, hi: most, softness: 0.0 }, 0.0, 0.0);
+            made.add(axis, row(Law::Range { lo: -most, hi: most, softness: 0.0 }, 0.0, 0.0));
         }
     }
 }
@@ -325,7 +333,7 @@ struct Made<'j> {
 }
 
 impl Made<'_> {
-    fn add(&mut self, direction: DVec3, is_angular: bool, law: Law, pushing: f64, target: f64) {
+    fn add(&mut self, direction: DVec3, row: JointRow) {
         let [a, b] = self.joined.bodies;
         self.rows.push(ContactPoint {
             a,
@@ -341,7 +349,7 @@ impl Made<'_> {
             point: self.point,
             material: Material { restitution: 0.0, friction: 0.0 },
             running: [0.0; 2],
-            row: Some(JointRow { is_angular, law, pushing, target, equation: None }),
+            row: Some(row),
             impulse: 0.0,
             sliding: [0.0; 2],
         });

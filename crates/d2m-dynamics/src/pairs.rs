@@ -109,8 +109,12 @@ impl Attempts {
         is_due
     }
 
-    fn note(&mut self, succeeds: bool) {
-        self.failed = if succeeds { 0 } else { (self.failed + 1).min(MOST_WAITING) };
+    fn succeeded(&mut self) {
+        *self = Self::default();
+    }
+
+    fn failed(&mut self) {
+        self.failed = (self.failed + 1).min(MOST_WAITING);
         self.wait = self.failed;
     }
 }
@@ -243,10 +247,11 @@ fn proven_clear_until(
     }
     if pair.axes.is_due() {
         let until = apart_along_axis_until([a, b], window, needed);
-        pair.axes.note(until > now);
         if until > now {
+            pair.axes.succeeded();
             return Ok(until);
         }
+        pair.axes.failed();
     }
     // Worth the distance where it will do, or where no direction is known.
     let will_do = pair.measured == Some(now) && pair.apart - approach([a, b]) * length > needed;

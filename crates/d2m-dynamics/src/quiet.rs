@@ -84,8 +84,11 @@ impl Quiet {
 mod tests {
     use super::*;
 
-    /// Steps of a hundredth, each at this speed there and back: for how long the body has been quiet after the quiet time.
-    fn quiet_after(rest: Rest, part: f64, is_back_and_forth: bool) -> f64 {
+    const ONWARDS: [f64; 2] = [1.0, 1.0];
+    const BACK_AND_FORTH: [f64; 2] = [1.0, -1.0];
+
+    /// Steps of a hundredth, two in each of the directions in turn: for how long the body has been quiet after the quiet time.
+    fn quiet_after(rest: Rest, part: f64, directions: [f64; 2]) -> f64 {
         let options = SimulationOptions::default();
         let (way, step) = (QUIET_WAY * options.gap, 0.01);
         let mut surface =
@@ -94,8 +97,7 @@ mod tests {
         for k in 0..100 {
             // Now a fifth of the speed, now all of it.
             let speed = part * way / QUIET_TIME * if k % 2 == 0 { 0.2 } else { 1.0 };
-            let sign = if is_back_and_forth && k % 4 > 1 { -1.0 } else { 1.0 };
-            surface.position.x += sign * speed * step;
+            surface.position.x += directions[k / 2 % 2] * speed * step;
             surface.speed = speed;
             quiet.go_on(surface, rest, step, &options);
         }
@@ -105,10 +107,10 @@ mod tests {
     /// What solutions shake by three times the speed of quiet bodies is quiet by its way, and not by its speed; what goes on is not.
     #[test]
     fn what_is_shaken_among_many_is_quiet_by_its_way() {
-        assert!(quiet_after(Rest::ByWay, 3.0, true) > QUIET_TIME);
-        assert!(quiet_after(Rest::ByWay, 9.0, false) < QUIET_TIME);
+        assert!(quiet_after(Rest::ByWay, 3.0, BACK_AND_FORTH) > QUIET_TIME);
+        assert!(quiet_after(Rest::ByWay, 9.0, ONWARDS) < QUIET_TIME);
         for rest in [Rest::BySpeed, Rest::Unbraked] {
-            assert!(quiet_after(rest, 3.0, true) < 0.1 * QUIET_TIME);
+            assert!(quiet_after(rest, 3.0, BACK_AND_FORTH) < 0.1 * QUIET_TIME);
         }
     }
 

@@ -177,18 +177,20 @@ impl Recorder {
         self.last.is_some()
     }
 
-    /// Ends the open segment at `time`; without length it stays open. `skipping`: bodies stood still in it.
-    pub(crate) fn cut(&mut self, time: f64, skipping: bool) {
-        let Some(open) = &mut self.open else { return };
-        if time <= open.start {
-            return;
+    /// Ends the open segment at `time`; without length it stays open.
+    pub(crate) fn cut(&mut self, time: f64) -> Option<&mut Segment> {
+        let mut closed = self.open.take_if(|open| open.start < time)?;
+        closed.end = time;
+        self.open = Some(Segment::at(time, Vec::new()));
+        self.done.extend(self.last.replace(closed));
+        self.last.as_mut()
+    }
+
+    /// As [`Self::cut`], of a segment in which bodies stood still.
+    pub(crate) fn cut_skipped(&mut self, time: f64) {
+        if let Some(segment) = self.cut(time) {
+            segment.skipped = time - segment.start;
         }
-        open.end = time;
-        open.skipped = if skipping { time - open.start } else { 0.0 };
-        let next = Segment::at(time, Vec::new());
-        let closed = self.open.replace(next);
-        self.done.extend(self.last.take());
-        self.last = closed;
     }
 
     /// Bodies that fly anew from the start of the open segment.

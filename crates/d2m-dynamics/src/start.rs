@@ -47,9 +47,11 @@ impl Simulation {
         for round in 0.. {
             let mut touching = Vec::new();
             for (a, b) in self.near_unchecked() {
-                let placed = self.placed(a, b)?;
-                if let Some(touch) = self.admit_placed((a, b), placed, round == MOST_ROUNDS)? {
-                    touching.push(touch);
+                match self.placed(a, b)? {
+                    Placed::Touching(touch) if round == MOST_ROUNDS => {
+                        return Err(self.intersecting((a, b), touch.point).into());
+                    }
+                    placed => touching.extend(self.admit_placed((a, b), placed)),
                 }
             }
             if touching.is_empty() {
@@ -121,13 +123,8 @@ impl Simulation {
         self.near_pairs(is_checked).into_iter().try_for_each(|(a, b)| self.placed(a, b).map(|_| ()))
     }
 
-    /// Pairs that start closer than the gap keep what they have; those that touch are returned, unless this is the `last` look at them.
-    fn admit_placed(
-        &mut self,
-        (a, b): (usize, usize),
-        placed: Placed,
-        last: bool,
-    ) -> Result<Option<Touch>, SimulationError> {
+    /// Pairs that start closer than the gap keep what they have; those that touch are returned.
+    fn admit_placed(&mut self, (a, b): (usize, usize), placed: Placed) -> Option<Touch> {
         match placed {
             Placed::Apart(within) => {
                 // A pair that has been parted goes on to the gap.
@@ -136,12 +133,11 @@ impl Simulation {
                 {
                     self.pairs.insert((a, b), Box::new(Pair::new(distance)));
                 }
-                Ok(None)
+                None
             }
-            Placed::Touching(touch) if last => Err(self.intersecting((a, b), touch.point)),
             Placed::Touching(touch) => {
                 self.pairs.insert((a, b), Box::new(Pair::new(self.options.gap)));
-                Ok(Some(touch))
+                Some(touch)
             }
         }
     }

@@ -38,8 +38,8 @@ pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
     }
     let mut sum = ExactSum::new();
     for (p, q) in [(a, b), (b, c), (c, a)] {
-        sum.add([p.x, q.y, 1.0], false);
-        sum.add([p.y, q.x, 1.0], true);
+        sum.add([p.x, q.y, 1.0]);
+        sum.add([-p.y, q.x, 1.0]);
     }
     sum.sign()
 }
@@ -73,13 +73,8 @@ pub fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Ordering {
         return sign(determinant);
     }
     let mut sum = ExactSum::new();
-    for (p, q, r, negative) in [(b, c, d, false), (a, c, d, true), (a, b, d, false), (a, b, c, true)] {
-        sum.add([p.x, q.y, r.z], negative);
-        sum.add([p.x, q.z, r.y], !negative);
-        sum.add([p.y, q.z, r.x], negative);
-        sum.add([p.y, q.x, r.z], !negative);
-        sum.add([p.z, q.x, r.y], negative);
-        sum.add([p.z, q.y, r.x], !negative);
+    for (p, q, r) in [(b, c, d), (a, d, c), (a, b, d), (a, c, b)] {
+        sum.add_determinant(p, q, r);
     }
     sum.sign()
 }
@@ -122,12 +117,7 @@ pub fn triple_product_sign(u: &[DVec3], v: &[DVec3], w: &[DVec3]) -> Ordering {
     for p in u {
         for q in v {
             for r in w {
-                exact.add([p.y, q.z, r.x], false);
-                exact.add([p.z, q.y, r.x], true);
-                exact.add([p.z, q.x, r.y], false);
-                exact.add([p.x, q.z, r.y], true);
-                exact.add([p.x, q.y, r.z], false);
-                exact.add([p.y, q.x, r.z], true);
+                exact.add_determinant(*p, *q, *r);
             }
         }
     }
@@ -162,9 +152,19 @@ impl ExactSum {
         Self { limbs: [0; 204], lowest: 204, highest: 0 }
     }
 
-    /// Adds (or subtracts) the product of the three factors.
-    fn add(&mut self, factors: [f64; 3], mut negative: bool) {
-        let mut weight = 3222;
+    /// Adds (p × q) · r.
+    fn add_determinant(&mut self, p: DVec3, q: DVec3, r: DVec3) {
+        self.add([p.x, q.y, r.z]);
+        self.add([-p.x, q.z, r.y]);
+        self.add([p.y, q.z, r.x]);
+        self.add([-p.y, q.x, r.z]);
+        self.add([p.z, q.x, r.y]);
+        self.add([-p.z, q.y, r.x]);
+    }
+
+    /// Adds the product of the three factors.
+    fn add(&mut self, factors: [f64; 3]) {
+        let (mut weight, mut negative) = (3222, false);
         let mut mantissas = [0_u64; 3];
         for (mantissa, factor) in mantissas.iter_mut().zip(factors) {
             let bits = factor.to_bits();

@@ -343,7 +343,7 @@ impl Interval {
         }
         let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
         for (a, b) in [(self.lo(), y.lo()), (self.lo(), y.hi()), (self.hi(), y.lo()), (self.hi(), y.hi())] {
-            let (low, high) = (-fused_up(a, b, z.lo(), true), fused_up(a, b, z.hi(), false));
+            let (low, high) = (-fused_up(-a, b, -z.lo()), fused_up(a, b, z.hi()));
             lo = if low < lo { low } else { lo };
             hi = if high > hi { high } else { hi };
         }
@@ -354,24 +354,23 @@ impl Interval {
 /// 2⁹⁹⁰: below it, no step of [`two_product`] or of the sum overflows.
 const LARGE: f64 = power_of_two(990);
 
-/// An upper bound of `a·b + c`, or of its negative; for ends, so that 0·∞ is 0 and an infinite `c` stays.
-fn fused_up(a: f64, b: f64, c: f64, negated: bool) -> f64 {
-    let flip = |x: f64| if negated { -x } else { x };
+/// An upper bound of `a·b + c`; for ends, so that 0·∞ is 0 and an infinite `c` stays.
+fn fused_up(a: f64, b: f64, c: f64) -> f64 {
     let product = end_product(a, b);
     if c.is_infinite() {
-        return flip(c);
+        return c;
     }
     if !(a.abs() < LARGE && b.abs() < LARGE && product.abs() < LARGE && c.abs() < LARGE) {
         return if a.is_infinite() || b.is_infinite() {
             // ±∞, or c alone for 0·∞.
-            up(flip(product + c))
+            up(product + c)
         } else {
-            fused_up_large(a, b, c, negated)
+            fused_up_large(a, b, c)
         };
     }
     let (p, q) = two_product(a, b);
     let (s, e) = two_sum(p, c);
-    up(flip(s + (e + q)))
+    up(s + (e + q))
 }
 
 /// A term below 2⁻⁶⁰⁰ of another one is left out: the result is rounded up by half a last place at least.
@@ -379,7 +378,7 @@ const NEGLIGIBLE: i32 = -600;
 
 /// [`fused_up`] for finite operands, with the larger one of product and summand scaled to about 1 by a power of two.
 #[cold]
-fn fused_up_large(a: f64, b: f64, c: f64, negated: bool) -> f64 {
+fn fused_up_large(a: f64, b: f64, c: f64) -> f64 {
     let [a, b, c] = [a, b, c].map(Binary::from_f64);
     let (p, q) = two_product(a.mantissa, b.mantissa);
     let of_product = a.exponent + b.exponent;
@@ -399,7 +398,7 @@ fn fused_up_large(a: f64, b: f64, c: f64, negated: bool) -> f64 {
         // Exactly: what cancels in the first sum leaves no error there.
         return up(0.0);
     }
-    scaled_up(up(if negated { -sum } else { sum }), exponent)
+    scaled_up(up(sum), exponent)
 }
 
 /// `x·2ⁿ` for |x| ≥ 2⁻⁶⁰⁰ and −300 ≤ n ≤ 2046, so that nothing underflows; ∞ above the doubles and −MAX below.

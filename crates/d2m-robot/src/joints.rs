@@ -161,7 +161,8 @@ impl<'a> JointReader<'a> {
             // The first part carries the others.
             let motion =
                 core::mem::take(&mut origin).joint(motion).map_err(|error| self.fault(joint, error))?;
-            let limits = limits_of(joint, kind, suffix.is_some());
+            // A file states limits of joints of one number only.
+            let limits = if suffix.is_none() { limits_of(joint, kind) } else { JointLimits::default() };
             let dynamics = joint.dynamics;
             self.joints.push(RobotJoint {
                 name,
@@ -257,9 +258,9 @@ impl<'a> JointReader<'a> {
     }
 }
 
-/// The limits that hold for one number of a joint: a file states those of joints of one number only.
-fn limits_of(joint: &UrdfJoint, kind: JointType, is_part: bool) -> JointLimits {
-    let Some(limit) = joint.limit.filter(|_| !is_part) else { return JointLimits::default() };
+/// The limits of a joint of one number.
+fn limits_of(joint: &UrdfJoint, kind: JointType) -> JointLimits {
+    let Some(limit) = joint.limit else { return JointLimits::default() };
     let has_position = matches!(kind, JointType::Revolute | JointType::Prismatic);
     JointLimits {
         position: has_position.then_some([limit.lower, limit.upper]),

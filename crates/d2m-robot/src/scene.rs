@@ -248,7 +248,7 @@ impl RobotScene {
                 Arc::make_mut(&mut self.pairs).push([other, place]);
                 self.search([other, place]);
             } else {
-                self.ignore_in_world([other, place], true);
+                self.ignore_in_world([other, place]);
             }
         }
         Ok(())
@@ -257,11 +257,11 @@ impl RobotScene {
     /// Whether a checked pair has to be searched along paths: not if it never moves against each other and is proven apart.
     fn search(&mut self, pair: [usize; 2]) {
         let is_settled = self.are_rigid(pair) && self.are_apart(pair);
-        self.ignore_in_world(pair, is_settled);
+        let [a, b] = pair.map(|part| &self.parts[part]);
+        self.world.ignore_pair(a.id, b.id, is_settled);
         if is_settled {
             return;
         }
-        let [a, b] = pair.map(|part| &self.parts[part]);
         let radii = a.radius + b.radius;
         let mut separation = self.pair_options(pair).min_separation;
         if radii > 0.0 {
@@ -301,15 +301,15 @@ impl RobotScene {
         now.is_ok_and(|now| time_of_contact(a, b, now, &options).is_ok_and(|answer| answer.is_separated()))
     }
 
-    fn ignore_in_world(&mut self, pair: [usize; 2], ignored: bool) {
+    fn ignore_in_world(&mut self, pair: [usize; 2]) {
         let [a, b] = pair.map(|part| self.parts[part].id);
-        self.world.ignore_pair(a, b, ignored);
+        self.world.ignore_pair(a, b, true);
     }
 
     fn ignore_parts(&mut self, a: usize, b: usize) {
         Arc::make_mut(&mut self.pairs).retain(|pair| *pair != [a, b] && *pair != [b, a]);
         self.stop_searching([a, b]);
-        self.ignore_in_world([a, b], true);
+        self.ignore_in_world([a, b]);
     }
 
     fn stop_searching(&mut self, [a, b]: [usize; 2]) {

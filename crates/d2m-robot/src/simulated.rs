@@ -155,10 +155,8 @@ impl<'r> RobotBodies<'r> {
         for link in 0..robot.links.len() {
             groups.entry(robot.rigid_group(link)).or_default().push(link);
         }
-        let root = robot.rigid_group(robot.root());
         for (&first, links) in &groups {
-            let is_held = first == root && self.base == Base::Held;
-            let Some(body) = self.body(first, links, &poses, is_held)? else { continue };
+            let Some(body) = self.body(first, links, &poses)? else { continue };
             let id = simulation.add(&body).map_err(|error| self.refused(&error))?;
             for &link in links {
                 added.bodies[link] = Some(id);
@@ -205,13 +203,7 @@ impl<'r> RobotBodies<'r> {
     }
 
     /// The body of a group of links, in the frame of its first one; none of a held root without a shape.
-    fn body(
-        &self,
-        first: usize,
-        links: &[usize],
-        poses: &[Pose],
-        is_held: bool,
-    ) -> Result<Option<Body>, RobotError> {
+    fn body(&self, first: usize, links: &[usize], poses: &[Pose]) -> Result<Option<Body>, RobotError> {
         let name = self.robot.links[first].name.as_str();
         let frame = Frame::of(&poses[first]);
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
@@ -243,6 +235,7 @@ impl<'r> RobotBodies<'r> {
             return Err(self.fault(format!("link {name:?}: {reason}")));
         }
         let has_shape = !triangles.is_empty();
+        let is_held = self.base == Base::Held && first == self.robot.rigid_group(self.robot.root());
         if !has_shape && is_held {
             return Ok(None);
         }

@@ -143,7 +143,7 @@ impl<'s> Step<'s> {
             #[cfg(feature = "audit")]
             self.conclude_flights(event.time);
             self.sense(event.time)?;
-            self.sim.recorder.cut(event.time, self.holding);
+            self.cut(event.time);
             self.sim.time = event.time;
             let held = |i: usize| self.sim.bodies[i].held;
             let most = self.sim.options.max_events;
@@ -224,13 +224,22 @@ impl<'s> Step<'s> {
         (met, seeds)
     }
 
+    /// The segment that is recorded ends here.
+    fn cut(&mut self, time: f64) {
+        if self.holding {
+            self.sim.recorder.cut_skipped(time);
+        } else {
+            self.sim.recorder.cut(time);
+        }
+    }
+
     /// Everything to the end of the step.
     fn finish(&mut self, time: f64) {
         let gravity = self.sim.options.gravity;
         self.report_impulses();
         #[cfg(feature = "audit")]
         self.conclude_flights(time);
-        self.sim.recorder.cut(time, self.holding);
+        self.cut(time);
         let length = time - self.start;
         for body in self.sim.bodies.iter_mut().filter(|body| RigidBody::is_awake(body)) {
             body.advance(time, gravity);

@@ -23,39 +23,31 @@ impl Scaled {
     /// Ends of an enclosure of a positive number, given ends of `value`; correct in the subnormal range and
     /// beyond the largest double, without rounding arithmetic.
     pub(super) fn ends(self, (lo, hi): Ends) -> Ends {
-        (scale_down(lo, self.exponent), scale_up(hi, self.exponent))
+        (scaled(lo, self.exponent).0, scaled(hi, self.exponent).1)
     }
 }
 
-/// The greatest double not above `x·2^k`, `x > 0` normal (0 when that is negative).
-fn scale_down(x: f64, k: i32) -> f64 {
-    scale(x, k, false)
-}
-
-/// The least double not below `x·2^k`, `x > 0` normal.
-fn scale_up(x: f64, k: i32) -> f64 {
-    scale(x, k, true)
-}
-
-fn scale(x: f64, k: i32, upwards: bool) -> f64 {
+/// The greatest double not above `x·2^k` and the least not below it, for a normal `x > 0`; other `x` as they are.
+fn scaled(x: f64, k: i32) -> Ends {
     if x.is_infinite() || x <= 0.0 {
-        return x;
+        return (x, x);
     }
     let bits = x.to_bits();
     let exponent = (bits >> 52) as i32;
     let target = exponent.saturating_add(k);
     if target >= 2047 {
-        return if upwards { f64::INFINITY } else { f64::MAX };
+        return (f64::MAX, f64::INFINITY);
     }
     if target >= 1 {
-        return f64::from_bits((bits & ((1 << 52) - 1)) | (target as u64) << 52);
+        let exact = f64::from_bits((bits & ((1 << 52) - 1)) | (target as u64) << 52);
+        return (exact, exact);
     }
     // Subnormal: shift the mantissa, carry the rest upwards.
     let mantissa = (bits & ((1 << 52) - 1)) | 1 << 52;
     let shift = (1 - target) as u32;
     let kept = mantissa.checked_shr(shift).unwrap_or(0);
     let lost = shift >= 64 || mantissa & ((1 << shift) - 1) != 0;
-    f64::from_bits(kept + u64::from(upwards && lost))
+    (f64::from_bits(kept), f64::from_bits(kept + u64::from(lost)))
 }
 
 /// `e^x` for a double-double |x| < 800: relative error below 2⁻⁶⁸, plus that of `x`, absolute.
@@ -106,7 +98,7 @@ fn exp2_at(x: f64) -> Ends {
     }
     let k = nearest_integer(x);
     if x == k {
-        return (scale_down(1.0, k as i32), scale_up(1.0, k as i32));
+        return scaled(1.0, k as i32);
     }
     let y = exp_reduced(DoubleDouble::from_product(x - k, 1.0) * LN_2, k as i32);
     y.ends(enclose(y.value))

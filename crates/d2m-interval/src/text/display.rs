@@ -1,6 +1,7 @@
 //! Interval to text. Decimal forms are rounded outwards: what is printed holds the interval.
 use core::fmt::{self, Write};
 
+use super::Side;
 use crate::Interval;
 
 /// All decimal digits of a double (767 at most) and the exponent, as `{:.766e}` prints them.
@@ -25,8 +26,15 @@ struct Rounded {
     point: i32,
 }
 
+/// Where digits that do not fit round to.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Towards {
+    Zero,
+    Infinity,
+}
+
 /// Decimal digits of `size ≥ 0`; `keep` counts digits from the first one on, given the exponent of that digit.
-fn rounded(size: f64, away: bool, keep: impl Fn(i32) -> i32) -> Result<Rounded, fmt::Error> {
+fn rounded(size: f64, towards: Towards, keep: impl Fn(i32) -> i32) -> Result<Rounded, fmt::Error> {
     let mut text = Digits { bytes: [0; 800], length: 0 };
     write!(text, "{size:.766e}")?;
     let text = core::str::from_utf8(&text.bytes[..text.length]).map_err(|_| fmt::Error)?;
@@ -39,7 +47,7 @@ fn rounded(size: f64, away: bool, keep: impl Fn(i32) -> i32) -> Result<Rounded, 
     let keep = keep(exponent);
     if keep <= 0 {
         // Not even the first digit: zero, or one unit of the last place that is printed.
-        if away {
+        if towards == Towards::Infinity {
             result.digits[0] = 1;
             result.count = 1;
             result.point = exponent + 2 - keep;
@@ -55,7 +63,7 @@ fn rounded(size: f64, away: bool, keep: impl Fn(i32) -> i32) -> Result<Rounded, 
             lost |= digit != b'0';
         }
     }
-    if lost && away {
+    if lost && towards == Towards::Infinity {
         let mut i = result.count;
         loop {
             if i == 0 {
@@ -83,16 +91,19 @@ fn digit(r: &Rounded, i: i32) -> char {
     char::from(b'0' + value)
 }
 
-/// Writes one end; `upwards` for the upper one.
-fn write_end(f: &mut fmt::Formatter<'_>, x: f64, upwards: bool) -> fmt::Result {
+/// Writes one end, rounded outwards.
+fn write_end(f: &mut fmt::Formatter<'_>, x: f64, side: Side) -> fmt::Result {
     if x.is_infinite() {
         return f.write_str(if x > 0.0 { "inf" } else { "-inf" });
     }
-    let away = upwards == (x > 0.0);
+    let towards = match (side, x > 0.0) {
+        (Side::Upper, true) | (Side::Lower, false) => Towards::Infinity,
+        (Side::Upper, false) | (Side::Lower, true) => Towards::Zero,
+    };
     let precision = f.precision().map(|p| i32::try_from(p).unwrap_or(i32::MAX / 2));
     let r = match precision {
-        Some(p) => rounded(x.abs(), away, |exponent| (exponent + 1).saturating_add(p))?,
-        None => rounded(x.abs(), away, |_| 17)?,
+        Some(p) => rounded(x.abs(), towards, |exponent| (exponent + 1).saturating_add(p))?,
+        None => rounded(x.abs(), towards, |_| 17)?,
     };
     if x < 0.0 && r.count > 0 {
         f.write_char('-')?;
@@ -138,9 +149,9 @@ impl fmt::Display for Interval {
             return f.write_str("[empty]");
         }
         f.write_char('[')?;
-        write_end(f, self.lo(), false)?;
+        write_end(f, self.lo(), Side::Lower)?;
         f.write_str(", ")?;
-        write_end(f, self.hi(), true)?;
+        write_end(f, self.hi(), Side::Upper)?;
         f.write_char(']')
     }
 }

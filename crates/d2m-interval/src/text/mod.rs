@@ -5,3 +5,10 @@ mod number;
 mod parse;
 #[cfg(feature = "serde")]
 mod serial;
+
+/// An end of an interval.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    Lower,
+    Upper,
+}

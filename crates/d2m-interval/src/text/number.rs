@@ -5,6 +5,7 @@
 use alloc::{format, vec::Vec};
 use core::cmp::Ordering;
 
+use super::Side;
 use super::big::Big;
 use crate::{Interval, ParseIntervalError};
 
@@ -213,8 +214,9 @@ impl Number {
         left.cmp(&right).then(if self.cut_off { Ordering::Less } else { Ordering::Equal })
     }
 
-    /// Sum with `steps/2` units of the last digit.
-    pub(super) fn moved(&self, steps: &Big, negative: bool) -> Self {
+    /// So many halves of a unit of the last digit to this side.
+    pub(super) fn moved(&self, steps: &Big, side: Side) -> Self {
+        let negative = side == Side::Lower;
         let twice = &self.numerator + &self.numerator;
         let (numerator, sign) = if self.negative == negative {
             (&twice + steps, negative)

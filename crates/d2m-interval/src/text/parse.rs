@@ -1,6 +1,7 @@
 //! Text to interval, by the grammar of IEEE 1788: the result is the narrowest interval that holds what is written.
 use core::str::FromStr;
 
+use super::Side;
 use super::big::Big;
 use super::number::{Number, Signed, exponent, sign};
 use crate::{Interval, ParseIntervalError};
@@ -30,9 +31,9 @@ fn uncertain(center: &str, rest: &str) -> Result<Interval, ParseIntervalError> {
         Some((rest, power)) => (rest, exponent(power)?),
         None => (rest, 0),
     };
-    let (rest, direction) = match rest.as_bytes().last() {
-        Some(b'u') => (&rest[..rest.len() - 1], Some(false)),
-        Some(b'd') => (&rest[..rest.len() - 1], Some(true)),
+    let (rest, only) = match rest.as_bytes().last() {
+        Some(b'u') => (&rest[..rest.len() - 1], Some(Side::Upper)),
+        Some(b'd') => (&rest[..rest.len() - 1], Some(Side::Lower)),
         _ => (rest, None),
     };
     if center.contains(['e', 'x', 'p', '/']) {
@@ -42,9 +43,9 @@ fn uncertain(center: &str, rest: &str) -> Result<Interval, ParseIntervalError> {
     center.decimal += power;
     if rest == "?" {
         let known = center.enclose();
-        return Ok(match direction {
-            Some(false) => Interval::raw(known.lo(), f64::INFINITY),
-            Some(true) => Interval::raw(f64::NEG_INFINITY, known.hi()),
+        return Ok(match only {
+            Some(Side::Upper) => Interval::raw(known.lo(), f64::INFINITY),
+            Some(Side::Lower) => Interval::raw(f64::NEG_INFINITY, known.hi()),
             None => Interval::ENTIRE,
         });
     }
@@ -56,11 +57,11 @@ fn uncertain(center: &str, rest: &str) -> Result<Interval, ParseIntervalError> {
         }
         Big::from_decimal(rest.as_bytes()).times_power_of_two(1)
     };
-    let lowest =
-        if direction == Some(false) { center.enclose() } else { center.moved(&steps, true).enclose() };
-    let highest =
-        if direction == Some(true) { center.enclose() } else { center.moved(&steps, false).enclose() };
-    Ok(Interval::raw(lowest.lo(), highest.hi()))
+    let end = |side: Side| match only {
+        Some(other) if other != side => center.enclose(),
+        _ => center.moved(&steps, side).enclose(),
+    };
+    Ok(Interval::raw(end(Side::Lower).lo(), end(Side::Upper).hi()))
 }
 
 impl FromStr for Interval {
@@ -103,11 +104,12 @@ impl FromStr for Interval {
                 End::Infinite { .. } => Err(ParseIntervalError::Order),
             };
         };
-        let side = |text: &str, negative: bool| match text.trim() {
-            "" => Ok(End::Infinite { negative }),
+        let end_or = |text: &str, missing: End| match text.trim() {
+            "" => Ok(missing),
             text => end(text),
         };
-        match (side(first, true)?, side(second, false)?) {
+        let (lowest, highest) = (End::Infinite { negative: true }, End::Infinite { negative: false });
+        match (end_or(first, lowest)?, end_or(second, highest)?) {
             (End::Infinite { negative: false }, _) | (_, End::Infinite { negative: true }) => {
                 Err(ParseIntervalError::Order)
             }

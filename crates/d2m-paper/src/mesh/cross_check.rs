@@ -152,17 +152,19 @@ impl Oracle<'_> {
 
     /// What is wrong with `answer`, if anything is.
     fn fault(&self, answer: &TimeOfContact, other: &TimeOfContact, window: Window) -> Option<String> {
-        let (free, end) = match answer {
-            TimeOfContact::Separated => (window.end(), true),
-            TimeOfContact::Undecided { clear_until } => (*clear_until, false),
-            TimeOfContact::Contact(c) => (c.time_lo, false),
+        let free = match answer {
+            TimeOfContact::Separated => window.end(),
+            TimeOfContact::Undecided { clear_until } => *clear_until,
+            TimeOfContact::Contact(c) => c.time_lo,
         };
         if !window.contains(free) {
             return Some(format!("time {free} outside the window"));
         }
         // What the other found is sampled most densely.
         let hint = other.contact().map_or(free, |c| c.time_hi);
-        if let Some(t) = self.meeting_before(window.start(), free, end, hint) {
+        // What is separated does not meet at the window's end either.
+        let at_end = || Some(free).filter(|&t| answer.is_separated() && self.clearly_meet(t));
+        if let Some(t) = self.meeting_before(window.start(), free, hint).or_else(at_end) {
             return Some(format!("the surfaces meet at {t:?}"));
         }
         let contact = answer.contact()?;
@@ -201,11 +203,15 @@ impl Oracle<'_> {
         self.a.body.bounding_sphere().radius.max(self.b.body.bounding_sphere().radius)
     }
 
-    /// A time in \[start, free) – or up to `free` where that is included – at which the surfaces clearly meet.
+    fn clearly_meet(&self, t: f64) -> bool {
+        self.meet(t, 1e-13)
+    }
+
+    /// A time in \[start, free) at which the surfaces clearly meet.
     ///
     /// Certified advancement by static distances proves most of the span free; the rest is sampled, more closely near
     /// its end and around `hint`.
-    fn meeting_before(&self, start: f64, free: f64, included: bool, hint: f64) -> Option<f64> {
+    fn meeting_before(&self, start: f64, free: f64, hint: f64) -> Option<f64> {
         let span = Interval::new(start, free);
         let speed = self.bound_speed(span);
         let mut t = start;
@@ -231,8 +237,8 @@ impl Oracle<'_> {
             let close = left * 0.5f64.powi(k * 48 / halvings);
             times.extend([free - close, hint - close, hint + close]);
         }
-        times.retain(|x| *x >= start && (*x < free || (included && *x <= free)));
-        times.into_iter().find(|x| self.meet(*x, 1e-13))
+        times.retain(|x| *x >= start && *x < free);
+        times.into_iter().find(|&x| self.clearly_meet(x))
     }
 
     /// A bound of the relative speed of any two points of the bodies.

@@ -41,6 +41,13 @@ pub(crate) struct LeafPair<'a> {
     pub(crate) options: PaperOptions,
 }
 
+/// The body whose vertices meet the other's faces.
+#[derive(Clone, Copy, Debug)]
+enum PointsOf {
+    A,
+    B,
+}
+
 impl LeafPair<'_> {
     /// Lowers `best` by every pair of features that may meet within `span`.
     ///
@@ -53,22 +60,24 @@ impl LeafPair<'_> {
         meter: &mut Meter,
     ) -> Result<(), Exhausted> {
         let frames = self.motion[0].frames(span);
-        self.points_and_faces(&frames[0], best, meter, false)?;
-        self.points_and_faces(&frames[1], best, meter, true)?;
+        self.points_and_faces(PointsOf::A, &frames[0], best, meter)?;
+        self.points_and_faces(PointsOf::B, &frames[1], best, meter)?;
         self.edges(&frames[0], best, meter)
     }
 
-    /// Vertices of A against triangles of B, or the other way round.
+    /// Vertices of one body against triangles of the other.
     fn points_and_faces(
         &self,
+        points_of: PointsOf,
         frame: &RelativeFrame,
         best: &mut Option<Candidate>,
         meter: &mut Meter,
-        swapped: bool,
     ) -> Result<(), Exhausted> {
-        let [points, faces_of] = if swapped { [self.b, self.a] } else { [self.a, self.b] };
+        let (points, faces_of, motion) = match points_of {
+            PointsOf::A => (self.a, self.b, &self.motion[0]),
+            PointsOf::B => (self.b, self.a, &self.motion[1]),
+        };
         let (TreeLeaf { tree, leaf }, TreeLeaf { tree: face_tree, leaf: face_leaf }) = (points, faces_of);
-        let motion = &self.motion[usize::from(swapped)];
         let boxes: Vec<Box3> = face_leaf.triangles.iter().map(|&f| hull(&face_tree.corners(f))).collect();
         let Some(all) = boxes.iter().copied().reduce(Box3::hull) else { return Ok(()) };
         let mut faces: Vec<Option<TriangleFace>> = vec![None; boxes.len()];
@@ -93,12 +102,10 @@ impl LeafPair<'_> {
                 meter.step()?;
                 let options = self.options.with_evaluations(evaluations(meter));
                 let mut pair = PointFace::new(motion, point, plane, jet, &options);
-                let feature = if swapped {
-                    FeaturePair::FaceVertex { face, vertex }
-                } else {
-                    FeaturePair::VertexFace { vertex, face }
+                let (feature, triangle_b) = match points_of {
+                    PointsOf::A => (FeaturePair::VertexFace { vertex, face }, face),
+                    PointsOf::B => (FeaturePair::FaceVertex { face, vertex }, triangle),
                 };
-                let triangle_b = if swapped { triangle } else { face };
                 let found = pair.first_contact(searched);
                 lower(best, found, feature, triangle_b);
                 charge(meter, pair.evaluated())?;

@@ -19,16 +19,24 @@ fn ordered<T: Ord>(a: T, b: T) -> [T; 2] {
 }
 
 impl PairFilter {
-    /// Sets whether a pair is ignored; true if that is new.
-    pub(super) fn set_ignored(&mut self, a: u32, b: u32, ignored: bool) -> bool {
-        let pair = ordered(a, b);
-        if ignored { self.pairs.insert(pair) } else { self.pairs.remove(&pair) }
+    /// Ignores a pair from now on.
+    pub(super) fn ignore(&mut self, a: u32, b: u32) {
+        self.pairs.insert(ordered(a, b));
     }
 
-    /// Sets whether the pairs of two groups are ignored; true if that is new.
-    pub(super) fn set_groups_ignored(&mut self, a: Group, b: Group, ignored: bool) -> bool {
-        let pair = ordered(a, b);
-        if ignored { self.groups.insert(pair) } else { self.groups.remove(&pair) }
+    /// No longer ignores a pair by itself; the pair, if it was.
+    pub(super) fn restore(&mut self, a: u32, b: u32) -> Option<IndexPair> {
+        self.pairs.take(&ordered(a, b))
+    }
+
+    /// Ignores the pairs of two groups from now on.
+    pub(super) fn ignore_groups(&mut self, a: Group, b: Group) {
+        self.groups.insert(ordered(a, b));
+    }
+
+    /// No longer ignores the pairs of two groups; were they ignored?
+    pub(super) fn restore_groups(&mut self, a: Group, b: Group) -> bool {
+        self.groups.remove(&ordered(a, b))
     }
 
     /// Is this pair ignored, by itself or by its groups?

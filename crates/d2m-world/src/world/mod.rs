@@ -261,14 +261,20 @@ impl World {
         if !(self.slots.holds(a) && self.slots.holds(b)) {
             return;
         }
-        if Arc::make_mut(&mut self.filter).set_ignored(a.index, b.index, ignored) && !ignored {
-            self.changed_pairs.push([a.index.min(b.index), a.index.max(b.index)]);
+        let filter = Arc::make_mut(&mut self.filter);
+        if ignored {
+            filter.ignore(a.index, b.index);
+        } else {
+            self.changed_pairs.extend(filter.restore(a.index, b.index));
         }
     }
 
     /// Whether contacts between a body of one group and a body of the other are ignored; the two groups may be the same.
     pub fn ignore_groups(&mut self, a: Group, b: Group, ignored: bool) {
-        if Arc::make_mut(&mut self.filter).set_groups_ignored(a, b, ignored) && !ignored {
+        let filter = Arc::make_mut(&mut self.filter);
+        if ignored {
+            filter.ignore_groups(a, b);
+        } else if filter.restore_groups(a, b) {
             self.schedule.clear();
         }
     }
