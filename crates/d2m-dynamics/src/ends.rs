@@ -1,7 +1,7 @@
 //! Where flights of jointed bodies end, against where their joints ask for.
 
 use crate::contact::{ContactPoint, Span, System};
-use crate::joined::Joined;
+use crate::joint_rows::Joined;
 use crate::rigid_body::RigidBody;
 use std::borrow::Cow;
 

@@ -2,9 +2,10 @@
 
 use crate::SimulationOptions;
 use crate::account::{Anchor, Entry, balance};
-use crate::attempt::{Clock, Problem};
+use crate::attempt::Problem;
 use crate::contact::{Company, ContactPoint, HIT, Span, System, add, impact};
-use crate::joined::Joined;
+use crate::flight_length::Clock;
+use crate::joint_rows::Joined;
 use crate::momenta::Momenta;
 use crate::rigid_body::RigidBody;
 use crate::solved_body::{body_at, moves, still, world_inertia};

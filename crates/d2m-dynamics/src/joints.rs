@@ -1,6 +1,6 @@
-//! The joints of a simulation: added, taken out, driven and read.
+//! The joints of a simulation: added, taken out, driven and read. What they ask of a solve: [`crate::joint_rows`].
 
-use crate::joined::Joined;
+use crate::joint_rows::Joined;
 use crate::{Joint, Motor, Simulation, SimulationError};
 
 impl Simulation {

@@ -1,7 +1,7 @@
 //! The simulation: bodies, settings, time.
 
 use crate::contact::Material;
-use crate::joined::Joined;
+use crate::joint_rows::Joined;
 use crate::neighbors::Neighbors;
 use crate::numbers::LARGEST;
 use crate::pairs::Pair;

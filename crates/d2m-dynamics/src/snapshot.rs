@@ -3,7 +3,7 @@
 use crate::body_state::BodyState;
 use crate::contact::Material;
 use crate::held::Source;
-use crate::joined::Joined;
+use crate::joint_rows::Joined;
 use crate::numbers::{Fault, material_fault};
 use crate::pair_state::PairState;
 use crate::rigid_body::Role;

@@ -6,7 +6,7 @@
 //! the energy that they move against each other with, as an inelastic impact does.
 
 use crate::contact::ContactPoint;
-use crate::joined::{Ahead, Joined};
+use crate::joint_rows::{Ahead, Joined};
 use crate::rigid_body::RigidBody;
 use crate::solved_body::moves;
 use crate::union::{join, root};

@@ -5,6 +5,18 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+pub(crate) const BOX_AT: &str = "x=-3,0,0;v=4,0,0";
+/// Two boxes of half size 1 that meet at t = 1/4; then the same pair standing still; then one that turns away.
+pub(crate) const TRIALS: &str = "\
+1,0,0,0,-3,0,0,4,0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0
+1,0,0,0,-3,0,0,0,0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0
+
+2,0,0,0,-3,0.1,0.2,-4,0,0,0,0,3,1,0,0,0,0,0,0,0,0,0,0,1,0
+1,0,0,0,0.5,0,0,0,0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0
+";
+pub(crate) const UNIT_BOX: &str = "shape:box?x=1&y=1&z=1";
+pub(crate) const HEADER: &str = "trial,status,toc,toc_hi,separation,microseconds,normal_x,normal_y,normal_z,point_x,point_y,point_z,feature,triangle_a,triangle_b,evidence,tolerance";
+
 /// Runs the command with something on standard input.
 pub(crate) fn d2m_with_input(arguments: &[&str], input: &[u8]) -> Output {
     let mut child = Command::new(env!("CARGO_BIN_EXE_d2m"))

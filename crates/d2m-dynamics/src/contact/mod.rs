@@ -4,6 +4,7 @@ mod accuracy;
 mod anderson;
 mod block;
 mod chosen;
+mod convex;
 mod factor;
 mod impact;
 mod infeasible;

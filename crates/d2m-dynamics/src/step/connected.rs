@@ -3,7 +3,7 @@
 use super::{FEW_ITEMS, Key, Occasion, Step};
 use crate::StepError;
 use crate::contact::ContactPoint;
-use crate::joined::Ahead;
+use crate::joint_rows::Ahead;
 use crate::pairs::{AROUND, Measured, Pair, measure};
 use crate::rigid_body::RigidBody;
 use d2m_bvh::QueryError;

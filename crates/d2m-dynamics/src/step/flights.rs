@@ -120,7 +120,8 @@ mod tests {
     use super::*;
     use crate::Body;
     use crate::faces::Faces;
-    use crate::rigid_body::{RigidBody, Splits};
+    use crate::flight::Splits;
+    use crate::rigid_body::RigidBody;
     use d2m_bvh::MeshTree;
     use std::sync::Arc;
 

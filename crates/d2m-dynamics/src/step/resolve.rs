@@ -2,10 +2,11 @@
 
 use super::connected::Group;
 use super::{FEW_ITEMS, Occasion, Step};
-use crate::attempt::Clock;
 use crate::contact::{Company, ContactPoint};
+use crate::flight::Splits;
+use crate::flight_length::Clock;
 use crate::group::{CROWD, Solved, islands, solve};
-use crate::rigid_body::{RigidBody, Splits};
+use crate::rigid_body::RigidBody;
 use crate::velocity::Velocity;
 use crate::{ContactImpulse, StepError};
 use d2m_mesh::parallel::map_owned;

@@ -1,4 +1,5 @@
 //! What bodies of tests stand on, and how they come to rest.
+#![allow(dead_code)] // not every test needs all of it
 
 use d2m_bvh::MeshTree;
 use d2m_dynamics::{Body, BodyId, Kind, Simulation};

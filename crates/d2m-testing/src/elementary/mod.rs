@@ -44,31 +44,31 @@ pub(crate) fn sqrt(a: &Fixed) -> Fixed {
     dashu_int::ops::SquareRoot::sqrt(&square).into()
 }
 
-/// Largest double not above (`upwards == false`) or least double not below the value.
+/// The largest double not above the value, and the least one not below it.
 ///
 /// # Panics
 /// Never: what is rounded has at most 53 bits.
-pub fn to_double(value: &Fixed, upwards: bool) -> f64 {
+pub fn to_doubles(value: &Fixed) -> [f64; 2] {
     let negative = *value < IBig::from(0);
     let size: UBig = value.clone().abs().try_into().expect("absolute value");
-    let away = upwards != negative;
     let length = size.bit_len();
     let shift = if length < P - 1074 + 53 { P - 1074 } else { length - 53 };
     let kept = &size >> shift;
-    let mut q = u64::try_from(&kept).expect("53 bits");
-    if away && (kept << shift) != size {
-        q += 1;
-    }
+    let q = u64::try_from(&kept).expect("53 bits");
+    let is_exact = (kept << shift) == size;
     let k = shift as i32 - P as i32;
-    let result = if k == -1074 {
-        f64::from_bits(q)
-    } else if k > 971 || (k == 971 && q == 1 << 53) {
-        if away { f64::INFINITY } else { f64::MAX }
-    } else {
+    let double = |q: u64, too_large: f64| {
         let power = |p: i32| f64::from_bits(((1023 + p) as u64) << 52);
-        q as f64 * power(k / 2) * power(k - k / 2)
+        if k == -1074 {
+            f64::from_bits(q)
+        } else if k > 971 || (k == 971 && q == 1 << 53) {
+            too_large
+        } else {
+            q as f64 * power(k / 2) * power(k - k / 2)
+        }
     };
-    if negative { -result } else { result }
+    let (near, far) = (double(q, f64::MAX), double(q + u64::from(!is_exact), f64::INFINITY));
+    if negative { [-far, -near] } else { [near, far] }
 }
 
 /// Σ over a Taylor series: `term_{n+1} = term_n · x / d(n)`, until the terms vanish.

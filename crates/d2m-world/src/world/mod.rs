@@ -5,6 +5,7 @@ mod clearance;
 #[cfg(feature = "audit")]
 mod concluded;
 mod filter;
+mod first_contact;
 mod pair_queue;
 mod pair_state;
 mod plan;

@@ -1,0 +1,245 @@
+//! How long the flights of an island are: until when velocities can be solved for, and what gives way where there are none.
+
+use crate::attempt::{Attempt, LIKE, Problem};
+use crate::contact::{Company, ContactPoint, LEFT_OVER, NEAR, Room};
+use crate::flight::Splits;
+use crate::gained::{Gained, is_of_joints_alone};
+use crate::joint_rows::Ahead;
+use crate::pull::pulls;
+use crate::rigid_body::RigidBody;
+use crate::solved_body::moves;
+use crate::taut::locked;
+use crate::velocity::Velocity;
+use glam::DVec3;
+use std::borrow::Cow;
+
+/// Moved bodies of an island from which on it flies to the end of the step however its bodies tumble.
+const MANY: usize = 20;
+/// The part of a gap a step that the ends of flights may be off what joints ask for: what is more is not corrected but diverges, as where the
+/// end of a long chain whips round, and shorter flights are solved for.
+const OFF_JOINT: f64 = 1e-2;
+/// The square of the angle by which an oscillation leads in a flight, from which on flights make more of it: where impulses act at their starts.
+const UNSTABLE: f64 = 4.0;
+/// The part of the energy that flights gain which flights of half the length may gain: one quarter is due.
+const LESS: f64 = 0.5;
+/// Halvings of such flights.
+const MOST_HALVINGS: u32 = 6;
+/// The part of the rate at which something closes in, and how much more than solutions leave anyway, from which on no velocities obey the law.
+const UNSOLVED: f64 = 1.0 / 8.0;
+/// The part of that rate from which on friction holds what would slip.
+const LOCKED: f64 = 0.5;
+/// The part of the bodies' speed that solutions may leave in any case.
+const OF_SPEED: f64 = 1.0 / 16.0;
+/// How much longer than a flight that bodies at rest would survive one is that is tried first, a power of two: what closes in
+/// from one side may be passed on through so many contacts.
+const PASSED_ON: f64 = 64.0;
+const SHORTENED: u32 = 6;
+
+/// When and how long.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Clock {
+    pub(crate) now: f64,
+    /// End of the step.
+    pub(crate) end: f64,
+}
+
+/// How fast contacts close if what impulses move stands still, and how long they share their room then.
+#[derive(Clone, Copy)]
+struct Closing {
+    rate: f64,
+    safe: f64,
+}
+
+/// What friction does where it is in the way of what could move without it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Friction {
+    Slips,
+    Locks,
+    /// It has locked for as long as there was room.
+    GivesWay,
+}
+
+impl Problem<'_> {
+    /// Velocities until the end of the step, or until the end of shorter flights: where bodies tumble; where joints are not met at the end of
+    /// longer ones; and where bodies that follow their motions leave the others no velocities with which contacts keep the gap. There all
+    /// contacts may close by a part of their distance, for as long as there are velocities with which none closes by more: then what room is
+    /// left is shared by all, however little it is.
+    pub(crate) fn solve(&self, clock: Clock) -> Attempt {
+        let Clock { now, end } = clock;
+        let moved = || self.states.iter().filter(|s| moves(s));
+        // Bodies that are held keep their momenta and the time at which they were held: they have no flight that ends. Bodies that tumble in a
+        // crowd meet others before the energy of their turning counts: it is not divided for one of them.
+        let is_whole = self.company != Company::Few || moved().count() > MANY;
+        let splits = if self.has_like_joints() { Splits::Jointed } else { Splits::Own };
+        let horizon = |s: &Cow<'_, RigidBody>| s.horizon_within(end, self.options.step, splits);
+        let mut end = if is_whole { end } else { moved().map(horizon).fold(end, f64::min) };
+        let mut tried = self.attempt(now, end, Room::Kept);
+        if let Some(stopped) = self.stopped(&tried, [now, end]) {
+            return stopped;
+        }
+        let is_of_joints = is_of_joints_alone(self.states, self.contacts);
+        let gained = |tried: &Attempt, end: f64| {
+            Gained::of(self.states, &tried.system, self.options, [now, end - now])
+        };
+        for _ in 0..MOST_HALVINGS {
+            let is_met = tried.found.missed <= OFF_JOINT * self.speed();
+            let before = is_of_joints.then(|| gained(&tried, end)).filter(|gained| gained.is_much());
+            if is_met && before.is_none() {
+                break;
+            }
+            let half = now + 0.5 * (end - now);
+            let shorter = self.attempt(now, half, Room::Kept);
+            // What shorter flights gain as well comes from elsewhere.
+            let gains_as_much = |before: Gained| gained(&shorter, half).energy > LESS * before.energy;
+            if is_met && before.is_some_and(gains_as_much) {
+                break;
+            }
+            (end, tried) = (half, shorter);
+        }
+        let closing = self.closing();
+        let rate = closing.map_or(0.0, |closing| closing.rate);
+        // Where no velocities obey the law the nearest ones may be as large as normals are askew: no faster than bodies were, or are driven.
+        let speed = |s: &Cow<'_, RigidBody>| s.present_velocity().surface_speed(s.radius);
+        let speed = tried.system.mean_speed().min(moved().map(speed).fold(rate, f64::max));
+        let left = LEFT_OVER * tried.system.left(tried.accuracy);
+        let most = left.max(OF_SPEED * speed).max(UNSOLVED * rate);
+        let is_cramped = !self.lasts(&tried);
+        if !is_cramped && (tried.found.residual <= most || closing.is_none()) {
+            return tried;
+        }
+        let friction = match closing {
+            _ if is_cramped => Friction::GivesWay,
+            Some(closing) if tried.found.residual >= LOCKED * closing.rate => Friction::Locks,
+            _ => Friction::Slips,
+        };
+        self.squeezed([now, end], closing, most, friction).unwrap_or(tried)
+    }
+
+    /// The bodies of closed chains as one, where their joints cannot be met at the end of a flight, nor of one half as long, because what pulls
+    /// them taut turns them to and fro faster than flights could follow.
+    fn stopped(&self, tried: &Attempt, [now, end]: [f64; 2]) -> Option<Attempt> {
+        let half = now + 0.5 * (end - now);
+        if !tried.found.diverges
+            || !self.is_taut(tried)
+            || !self.attempt(now, half, Room::Kept).found.diverges
+        {
+            return None;
+        }
+        let ahead = Ahead { length: end - now, step: self.options.step, forces: false };
+        let (contacts, joints) = locked(self.members, self.states, self.contacts, self.joints, ahead)?;
+        let attempt = Problem { contacts: &contacts, joints: &joints, ..*self }.attempt(now, end, Room::Kept);
+        (attempt.found.missed <= OFF_JOINT * self.speed() && self.lasts(&attempt)).then_some(attempt)
+    }
+
+    /// Do joints pull bodies to and fro faster than flights could follow?
+    fn is_taut(&self, attempt: &Attempt) -> bool {
+        let spins: Vec<DVec3> = attempt.system.bodies.iter().map(|body| body.velocity.angular).collect();
+        let length = attempt.span.remaining;
+        let found = &attempt.found.contacts;
+        let pulls = pulls(&[], self.states, &spins, found, length, |body| self.place(body));
+        pulls.into_iter().flatten().any(|pull| pull.speed >= UNSTABLE)
+    }
+
+    /// Do joints hold bodies of like masses? Light ones between heavy ones are pulled to and fro faster than they turn.
+    fn has_like_joints(&self) -> bool {
+        let masses = || self.states.iter().filter(|s| moves(s)).map(|s| s.mass);
+        let (least, most) = masses().fold((f64::INFINITY, 0.0f64), |(lo, hi), m| (lo.min(m), hi.max(m)));
+        self.contacts.iter().any(|contact| contact.row.is_some()) && most <= LIKE * least
+    }
+
+    /// Do the contacts last, with some of what is still to be added to restore the gap?
+    fn lasts(&self, attempt: &Attempt) -> bool {
+        attempt.lasts(self.options.gap, |k| attempt.restored(k))
+    }
+
+    /// The longest flights, of some lengths, in which contacts close by no more than the room that they share, and solutions leave no more
+    /// than `most`. If friction allows none, without: it can only hold what room there is. Where all is possible without friction, only what
+    /// that locks shares room, as between wedges, and slips where hardly any is left: it crushes nothing by itself.
+    fn squeezed(
+        &self,
+        [now, end]: [f64; 2],
+        closing: Option<Closing>,
+        most: f64,
+        friction: Friction,
+    ) -> Option<Attempt> {
+        let contacts: Vec<ContactPoint> = self.contacts.iter().map(ContactPoint::without_friction).collect();
+        let smooth = Problem { contacts: &contacts, ..*self };
+        let slipping = smooth.attempt(now, end, Room::Kept);
+        let obeys = |attempt: &Attempt| attempt.found.residual <= most && self.lasts(attempt);
+        let is_possible = obeys(&slipping);
+        match friction {
+            Friction::Slips if is_possible => return None,
+            Friction::GivesWay if is_possible => return Some(slipping),
+            _ => {}
+        }
+        let Closing { safe, .. } = closing?;
+        let lengths = (0..=SHORTENED).map(|k| PASSED_ON * safe / f64::from(1u32 << k));
+        let ends = lengths.map(|length| if length < end - now { now + length } else { end });
+        let ends: Vec<f64> = ends.filter(|&until| until > now).collect();
+        let shared = |problem: &Problem<'_>, until: f64| {
+            Some(problem.attempt(now, until, Room::Shared)).filter(|attempt| obeys(attempt))
+        };
+        if friction == Friction::GivesWay {
+            // With friction, as long as that has flights no shorter than without.
+            return longest(&ends, |until| shared(self, until).or_else(|| shared(&smooth, until)));
+        }
+        let of = |problem: &Problem<'_>| longest(&ends, |until| shared(problem, until));
+        of(self).or_else(|| if is_possible { None } else { of(&smooth) })
+    }
+
+    /// A gap in a step.
+    fn speed(&self) -> f64 {
+        self.options.gap / self.options.step
+    }
+
+    /// How fast, and for how long, what follows its motion closes in on bodies that stand still. None: nothing does, within the gap or so.
+    fn closing(&self) -> Option<Closing> {
+        let of = |contact: &ContactPoint| {
+            let state = |body: usize| &self.states[self.place(body)];
+            let velocity = |body: usize| {
+                if moves(state(body)) { Velocity::default() } else { state(body).present_velocity() }
+            };
+            let rate = -contact.rate(velocity(contact.a), velocity(contact.b));
+            let is_moved = moves(state(contact.a)) || moves(state(contact.b));
+            let is_near = contact.row.is_none() && contact.distance <= NEAR * contact.gap;
+            let closing = || Closing { rate, safe: contact.shared_room() / rate };
+            (is_near && is_moved && rate > 0.0).then(closing)
+        };
+        let worst = |x: Closing, y: Closing| Closing { rate: x.rate.max(y.rate), safe: x.safe.min(y.safe) };
+        self.contacts.iter().filter_map(of).reduce(worst)
+    }
+}
+
+/// What is found for the latest of these times, descending, by bisection: the shorter flights are, the more may close in.
+fn longest<T>(ends: &[f64], found: impl Fn(f64) -> Option<T>) -> Option<T> {
+    let (mut from, mut to, mut best) = (0, ends.len(), None);
+    while from < to {
+        let middle = from + (to - from) / 2;
+        match found(ends[middle]) {
+            Some(answer) => (to, best) = (middle, Some(answer)),
+            None => from = middle + 1,
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::cell::Cell;
+
+    /// Of seven lengths three are tried.
+    #[test]
+    fn the_longest_flights_are_found_by_bisection() {
+        let ends: Vec<f64> = (1..=7).rev().map(f64::from).collect();
+        for most in 0..=7 {
+            let tried = Cell::new(0);
+            let found = longest(&ends, |end| {
+                tried.set(tried.get() + 1);
+                Some(end).filter(|&end| end <= f64::from(most))
+            });
+            assert_eq!(found, (most > 0).then_some(f64::from(most)));
+            assert_eq!(tried.get(), 3);
+        }
+    }
+}
