@@ -1,4 +1,4 @@
-//! Results to files that are complete or absent, or to standard output.
+//! Results to files that are complete or absent, plain or packed by gzip, or to standard output.
 
 use crate::failure::Failure;
 pub(crate) use d2m_io::short_number as short;

@@ -1,4 +1,5 @@
-//! The spans of a window in which two bodies are clear of each other, and those in which they are in contact.
+//! The spans of a window in which two bodies are clear of each other, and those in which they are in contact. Clear spans end where a search of
+//! the first contact ends; ends of contact are found by [`super::staying_walk`].
 
 #[cfg(feature = "audit")]
 use super::concluded::{Claimed, conclude_apart};

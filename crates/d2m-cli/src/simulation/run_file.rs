@@ -1,4 +1,4 @@
-//! The lines of a run file: every number with the digits that give its bits back.
+//! The lines of a run file: every number with the digits that give its bits back. (They are packed where they are written: `output`.)
 
 use d2m::motion::ConstantTwist;
 use d2m_dynamics::{BodyId, ContactImpulse, Segment, Simulation};

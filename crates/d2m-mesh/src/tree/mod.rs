@@ -1,4 +1,8 @@
 //! Trees of oriented boxes over a mesh.
+//!
+//! What a box is stands in [`node`], the slabs that cut its edges off in [`slabs`]. Another bounding volume is a field of a node: fitted in
+//! `bottom_up` (for construction and refit), checked in `validate`, written in `file`, and of use in the tests of pairs, of bodies at rest in
+//! [`box_pair`] and `resting/node_pair`, of moving ones in `d2m-bvh`, `pair/boxes`.
 
 mod bottom_up;
 pub(crate) mod box_pair;
