@@ -1,5 +1,6 @@
 //! Time that is skipped at once: swept volumes of bodies, and what a screw motion leaves unchanged.
 
+mod angle;
 mod axis_distance;
 mod orbits;
 mod projection;
@@ -21,6 +22,8 @@ pub(crate) struct SkipLimits {
     pub(crate) most_work: u64,
     /// So many more for each triangle that was projected.
     pub(crate) most_a_triangle: u64,
+    /// Pairs that may be tested before the bodies are measured.
+    pub(crate) most_before: u64,
     /// What is left of the query's budget, in pairs, for all that the attempt does.
     pub(crate) budget: u64,
     /// The attempt fails when this has come.

@@ -1,6 +1,7 @@
 //! The triangles of a body, one of each orbit class: those that the screw carries into each other have one projection.
 
-use super::projection::{Piece, ProjectedVertex, Range, angle};
+use super::angle::angle;
+use super::projection::{Piece, ProjectedVertex, Range};
 use super::projection_tree::ProjectionTree;
 use super::screw::Screw;
 use d2m_mesh::margin::UP;
@@ -28,15 +29,28 @@ const FIRST_STEP: f64 = 0.387_654;
 
 /// The vertices of a body, seen from the axis.
 pub(super) struct PlacedVertices {
-    pub(super) places: Vec<DVec3>,
+    places: Vec<ProjectedVertex>,
     /// Their angles, where they were needed.
     angles: Vec<Option<f64>>,
 }
 
 impl PlacedVertices {
-    pub(super) fn new(places: Vec<DVec3>) -> Self {
+    pub(super) fn new(places: impl Iterator<Item = DVec3>) -> Self {
+        let places: Vec<_> = places.map(ProjectedVertex::new).collect();
         Self { angles: vec![None; places.len()], places }
     }
+
+    /// The corners of a triangle.
+    pub(super) fn corners(&self, triangle: [u32; 3]) -> [DVec3; 3] {
+        triangle.map(|v| self.places[v as usize].at)
+    }
+}
+
+/// A triangle of a body: the numbers of its vertices, and its least distance from the axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SeenTriangle {
+    pub(super) vertices: [u32; 3],
+    pub(super) near: f64,
 }
 
 /// The projections of a body: of the triangles whose angles are known, and of the others.
@@ -46,17 +60,17 @@ pub(super) struct BodyProjections {
 }
 
 impl BodyProjections {
-    /// Of triangles, given by the numbers of their vertices.
+    /// Of some triangles.
     pub(super) fn try_new(
         screw: &Screw,
         vertices: &mut PlacedVertices,
-        triangles: &[[u32; 3]],
+        triangles: &[SeenTriangle],
         clock: &mut Meter,
     ) -> Result<Self, Exhausted> {
         let PlacedVertices { places, angles } = vertices;
-        let farthest = places.iter().map(|p| p.truncate().length_squared()).fold(0.0, f64::max).sqrt();
+        let farthest = places.iter().map(|vertex| vertex.rho).fold(0.0, f64::max);
         let mut angle_of = |v: u32| {
-            let at = places[v as usize];
+            let at = places[v as usize].at;
             *angles[v as usize].get_or_insert_with(|| angle(at.y, at.x))
         };
         let mut orbits = Orbits {
@@ -68,12 +82,12 @@ impl BodyProjections {
             turns: Vec::new(),
         };
         let mut near_axis = Vec::new();
-        for triangle in triangles {
+        for &SeenTriangle { vertices, near } in triangles {
             clock.step()?;
-            let piece = Piece::of(triangle.map(|v| ProjectedVertex::new(places[v as usize])), screw.h);
+            let piece = Piece::of(vertices.map(|v| places[v as usize]), near, screw.h);
             // Near the axis the angle means nothing.
             if is_beside(&piece, screw.h) {
-                orbits.add(piece, triangle.map(&mut angle_of));
+                orbits.add(piece, vertices.map(&mut angle_of));
             } else if piece.wide {
                 near_axis.push(piece);
             } else {
@@ -88,7 +102,8 @@ impl BodyProjections {
             let mut still_near = Vec::new();
             for part in near_axis.iter().flat_map(|piece| piece.divided(screw.h)) {
                 clock.step()?;
-                let part = Piece::of(part.corners.map(|corner| ProjectedVertex::new(corner.at)), screw.h);
+                let part =
+                    Piece::of(part.corners.map(|corner| ProjectedVertex::new(corner.at)), part.near, screw.h);
                 if is_beside(&part, screw.h) {
                     orbits.add(part, part.corners.map(|corner| angle(corner.at.y, corner.at.x)));
                 } else {
@@ -222,6 +237,7 @@ fn less_than_half_a_turn(by: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::pair::scene::MovingScene;
+    use crate::skip::swept_body::AnnularBound;
     use crate::{MeshTree, QueryOptions, TriMesh, Window};
     use d2m_motion::ConstantTwist;
     use d2m_testing::{Draw, KnuthRandom};
@@ -252,8 +268,10 @@ mod tests {
                 [(); 3].map(|()| middle + random.vector() * size)
             });
             for corners in &places {
-                let piece = Piece::of(corners.map(ProjectedVertex::new), screw.h);
-                orbits.add(piece, corners.map(|p| angle(p.y, p.x)));
+                let corners = corners.map(ProjectedVertex::new);
+                let near = AnnularBound::of(&corners.map(|p| p.at), true).near;
+                let piece = Piece::of(corners, near, screw.h);
+                orbits.add(piece, corners.map(|p| angle(p.at.y, p.at.x)));
             }
             assert_eq!(orbits.pieces.len(), 1);
             let [one, other] = places;

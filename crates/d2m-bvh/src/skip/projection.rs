@@ -6,8 +6,8 @@
 //!
 //! See docs/theory/engine.md, "Screws".
 
+use super::angle::angle;
 use super::axis_distance::distance_in_plane;
-use d2m_interval::Interval;
 use d2m_mesh::margin::UP;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -29,6 +29,9 @@ const RHO: usize = 0;
 const PHI: usize = 4;
 /// How much less differences of heights count than those of ρ and φ in the shape of cells.
 const HEIGHT_WEIGHT: f64 = 0.1;
+
+/// Times that a triangle may be divided by four.
+const MOST_DIVISIONS: u8 = 7;
 
 /// From the lowest to the highest of some numbers.
 #[derive(Clone, Copy, Debug)]
@@ -79,6 +82,7 @@ impl<const N: usize> Slabs<N> {
 impl<const N: usize> Directions<N> {
     /// How far apart two parts are along each direction, as distances, with the first one's φ raised by `shift`; and how much F may change a
     /// unit of distance. Points that are within ℓ of each other differ in F by at most |∇F| ℓ, with |∇F|² = α² + β² `steep`².
+    #[inline(always)]
     pub(super) fn distances(&self, [a, b]: [&Slabs<N>; 2], shift: f64, steep: f64) -> ([f64; N], [f64; N]) {
         let (mut distances, mut lengths) = ([0.0; N], [0.0; N]);
         for j in 0..N {
@@ -90,6 +94,30 @@ impl<const N: usize> Directions<N> {
         }
         (distances, lengths)
     }
+
+    /// The direction along which two parts are furthest apart: see [`distances`](Self::distances).
+    #[inline(always)]
+    pub(super) fn widest(&self, [a, b]: [&Slabs<N>; 2], shift: f64, steep: f64) -> WidestGap {
+        let (distances, _) = self.distances([a, b], shift, steep);
+        // A side of no length has no direction, and its distance is no number.
+        let (mut k, mut widest) = (0, f64::NEG_INFINITY);
+        for (j, distance) in distances.into_iter().enumerate() {
+            if distance > widest {
+                (k, widest) = (j, distance);
+            }
+        }
+        let moved = self.beta[k] * shift;
+        let (above, below) = (b.low[k] - (a.high[k] + moved), (a.low[k] + moved) - b.high[k]);
+        WidestGap { direction: k, gap: above.max(below), first_is_below: above > below }
+    }
+}
+
+/// Along which direction two parts are furthest apart, their gap in F, and which of them has the lower F.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WidestGap {
+    pub(super) direction: usize,
+    pub(super) gap: f64,
+    pub(super) first_is_below: bool,
 }
 
 /// Bounds of what a part of a body covers.
@@ -156,13 +184,15 @@ impl ProjectedVertex {
     }
 }
 
-/// arctan(y/x) in its quadrant; wrong by less than 8·2⁻⁵³ of π.
-pub(super) fn angle(y: f64, x: f64) -> f64 {
-    Interval::point(y).atan2(Interval::point(x)).mid()
-}
-
 fn distance_from_axis(corners: &[ProjectedVertex; 3]) -> f64 {
     distance_in_plane(&corners.map(|corner| corner.at.with_z(0.0)), DVec3::Z)
+}
+
+/// What is beside the range of F between the corners of a piece: see [`Piece::bends`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bends {
+    pub(super) below: f64,
+    pub(super) above: f64,
 }
 
 /// A triangle, or a part of one.
@@ -183,12 +213,12 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// A triangle of which no angles are known yet, on a screw with φ = z − hθ.
-    pub(super) fn of(corners: [ProjectedVertex; 3], h: f64) -> Self {
+    /// A triangle at this distance from the axis of which no angles are known yet, on a screw with φ = z − hθ.
+    pub(super) fn of(corners: [ProjectedVertex; 3], near: f64, h: f64) -> Self {
         let far = corners.iter().map(|vertex| vertex.rho).fold(0.0, f64::max);
         Self {
             corners,
-            near: distance_from_axis(&corners),
+            near,
             bend_rho: far,
             bend_phi: 0.0,
             shared: None,
@@ -207,6 +237,7 @@ impl Piece {
     }
 
     /// The range of F along directions.
+    #[inline(always)]
     pub(super) fn reach<const N: usize>(&self, along: &Directions<N>) -> Slabs<N> {
         let mut slabs = Slabs { low: [0.0; N], high: [0.0; N] };
         let c = &self.corners;
@@ -215,12 +246,18 @@ impl Piece {
             let [p, q, r] = [0, 1, 2].map(|k: usize| alpha * c[k].rho + beta * c[k].phi);
             let (low, high) = if p < q { (p, q) } else { (q, p) };
             let (low, high) = (if r < low { r } else { low }, if r > high { r } else { high });
-            let either = beta.abs() * self.bend_phi;
-            let (below, above) = if alpha > 0.0 { (alpha, 0.0) } else { (0.0, -alpha) };
-            slabs.low[j] = low - (below * self.bend_rho + either) * UP;
-            slabs.high[j] = high + (above * self.bend_rho + either) * UP;
+            let bends = self.bends(alpha, beta);
+            (slabs.low[j], slabs.high[j]) = (low - bends.below, high + bends.above);
         }
         slabs
+    }
+
+    /// How far F = αρ + βφ may be below and above what it is at the corners.
+    #[inline(always)]
+    pub(super) fn bends(&self, alpha: f64, beta: f64) -> Bends {
+        let either = beta.abs() * self.bend_phi;
+        let (below, above) = if alpha > 0.0 { (alpha, 0.0) } else { (0.0, -alpha) };
+        Bends { below: (below * self.bend_rho + either) * UP, above: (above * self.bend_rho + either) * UP }
     }
 
     /// Fills in the bends: half of the bound on the second derivative, 1/ρ and 1/ρ², times the square of a radius that
@@ -241,6 +278,10 @@ impl Piece {
         let bend_theta = (0.5 * radius / (near * near)).min(PI);
         self.bend_phi = if h == 0.0 { 0.0 } else { h.abs() * bend_theta * UP };
         self
+    }
+
+    pub(super) fn is_divisible(&self) -> bool {
+        self.divisions < MOST_DIVISIONS
     }
 
     pub(super) fn divided(&self, h: f64) -> [Self; 4] {

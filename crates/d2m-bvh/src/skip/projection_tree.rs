@@ -3,9 +3,6 @@
 use super::projection::{Piece, Projection};
 use d2m_mesh::{Exhausted, Meter};
 
-/// Times that a triangle may be divided by four.
-const MOST_DIVISIONS: u8 = 7;
-
 /// As many parts are divided at their median in less than a millisecond.
 const MOST_SELECTED: usize = 1 << 14;
 /// Of more parts, so many have their median taken; each half gets at least one part in [`LEAST_HALF`] of them.
@@ -134,7 +131,7 @@ impl ProjectionTree {
             return Ok(first as usize..(first + count) as usize);
         }
         let Some(piece) = self.piece(cell).copied() else { return Ok(0..0) };
-        if piece.divisions == MOST_DIVISIONS {
+        if !piece.is_divisible() {
             return Ok(0..0);
         }
         let first = self.cells.len();

@@ -6,13 +6,14 @@
 //!
 //! See docs/theory/engine.md, "Screws".
 
-use super::orbits::{BodyProjections, PlacedVertices};
-use super::projection::{DIRECTIONS, Directions, Piece, Range};
+use super::orbits::{BodyProjections, PlacedVertices, SeenTriangle};
+use super::projection::{DIRECTIONS, Directions, Piece, Range, Slabs, WidestGap};
 use super::projection_tree::ProjectionTree;
 use super::screw::Screw;
 use super::swept_body::AnnularBound;
 use super::{Skip, SkipLimits, later_offset};
 use crate::pair::scene::{MovingScene, SceneBody};
+use d2m_lanes::{Lanes, Task, run};
 use d2m_mesh::margin::{UNIT_F64, UP};
 use d2m_mesh::{Exhausted, Meter};
 use glam::DVec3;
@@ -20,7 +21,7 @@ use glam::DVec3;
 /// Larger pairs of meshes are not projected: a projection takes about 500 bytes a triangle.
 const MOST_TRIANGLES: usize = 1 << 18;
 /// Factor of the scene's size that covers all roundings here. An angle errs by 64·2⁻⁵³ of the size over the distance from the
-/// axis and 8π·2⁻⁵³ of its own, and as much again with each division of a triangle; φ is h times as far off, and is
+/// axis and 8·2⁻⁵³ of its own, and as much again with each division of a triangle; φ is h times as far off, and is
 /// divided by a steepness of at least h over the distance. Triangles have distances within a factor of 100
 /// ([`BESIDE`](super::orbits::BESIDE)).
 const PROJECTION_ERROR: f64 = 16_384.0 * UNIT_F64;
@@ -78,13 +79,13 @@ impl Seen {
         clock: &mut Meter,
     ) -> Result<Self, Exhausted> {
         let mesh = body.tree.mesh();
-        let places: Vec<DVec3> = mesh.vertices().iter().map(|&p| place(body.place(p))).collect();
+        let vertices = PlacedVertices::new(mesh.vertices().iter().map(|&p| place(body.place(p))));
         let annulus = |triangle: &[u32; 3]| {
             clock.step()?;
-            Ok(AnnularBound::of(&triangle.map(|v| places[v as usize]), true))
+            Ok(AnnularBound::of(&vertices.corners(*triangle), true))
         };
         let annuli = mesh.triangles().iter().map(annulus).collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { vertices: PlacedVertices::new(places), annuli })
+        Ok(Self { vertices, annuli })
     }
 }
 
@@ -118,8 +119,10 @@ fn clear_along(
     let places = screw.places(scene, start);
     let probe = [0, 1].map(|body| {
         let corners = bodies[body].corners(limits.witnesses[body]).map(&places[body]);
-        let mut vertices = PlacedVertices::new(corners.to_vec());
-        BodyProjections::try_new(screw, &mut vertices, &[[0, 1, 2]], &mut walk.clock)
+        let near = AnnularBound::of(&corners, true).near;
+        let triangle = SeenTriangle { vertices: [0, 1, 2], near };
+        let mut vertices = PlacedVertices::new(corners.into_iter());
+        BodyProjections::try_new(screw, &mut vertices, &[triangle], &mut walk.clock)
     });
     let [Ok(a), Ok(b)] = probe else { return Skip { clear_until: None, work: 0 } };
     if !walk.compare([a, b]) {
@@ -139,14 +142,56 @@ fn clear_along(
     walk.left += more;
     let whole = [0, 1].map(|body| {
         let all = bodies[body].tree.mesh().triangles();
-        let triangles: Vec<[u32; 3]> = near[body].iter().map(|&t| all[t]).collect();
-        BodyProjections::try_new(screw, &mut seen[body].vertices, &triangles, &mut walk.clock)
+        let Seen { vertices, annuli } = &mut seen[body];
+        let triangles: Vec<_> =
+            near[body].iter().map(|&t| SeenTriangle { vertices: all[t], near: annuli[t].near }).collect();
+        BodyProjections::try_new(screw, vertices, &triangles, &mut walk.clock)
     });
     let [Ok(a), Ok(b)] = whole else { return Skip { clear_until: None, work: projected } };
     let apart = walk.compare([a, b]);
     let work = most - walk.left + projected;
     let clear_until = if apart { later_offset(start, walk.clear, walk.length, scene.end) } else { None };
     Skip { clear_until, work }
+}
+
+/// The search through two trees with one shift of φ: lowers `clear` to what they allow; false when the walk is to end. Depth first, compiled for
+/// each instruction set.
+struct WholeShift<'w, 's> {
+    walk: &'w mut Walk<'s>,
+    a: &'w mut ProjectionTree,
+    b: &'w mut ProjectionTree,
+}
+
+impl Task for WholeShift<'_, '_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> bool {
+        let Self { walk, a, b } = self;
+        let mut waiting = vec![[0, 0]];
+        while let Some(cells) = waiting.pop() {
+            if walk.left == 0 || walk.clock.step().is_err() {
+                return false;
+            }
+            walk.left -= 1;
+            let until = walk.clear_for([&*a, &*b], cells);
+            if until >= walk.clear {
+                continue;
+            }
+            let open_a = walk.opens_first([&*a, &*b], cells);
+            let opened =
+                if open_a { a.open(cells[0], &mut walk.clock) } else { b.open(cells[1], &mut walk.clock) };
+            let Ok(parts) = opened else { return false };
+            if parts.is_empty() {
+                walk.clear = until;
+                if walk.clear <= walk.gain {
+                    return false;
+                }
+            }
+            waiting.extend(parts.rev().map(|part| if open_a { [part, cells[1]] } else { [cells[0], part] }));
+        }
+        true
+    }
 }
 
 impl Walk<'_> {
@@ -170,6 +215,7 @@ impl Walk<'_> {
 
     /// For how long the heights of the parts stay further apart than the level: the gap changes by the climb, and by what a body's axis is
     /// tilted against the other one's.
+    #[inline(always)]
     fn heights_clear_for(&self, [a, b]: [Range; 2]) -> f64 {
         let (climb, length) = (self.screw.climb, self.length);
         let mut best: f64 = 0.0;
@@ -211,7 +257,7 @@ impl Walk<'_> {
             }
             for k in leads.0 as i64..=leads.1 as i64 {
                 self.shift = k as f64 * lead;
-                if !self.visit([&mut *a, &mut *b], [0, 0]) {
+                if !run(WholeShift { walk: self, a, b }) {
                     return false;
                 }
             }
@@ -219,79 +265,85 @@ impl Walk<'_> {
         true
     }
 
-    /// Lowers `clear` to what the pair allows; false when the walk is to end.
-    fn visit(&mut self, [a, b]: [&mut ProjectionTree; 2], cells: [usize; 2]) -> bool {
-        if self.left == 0 || self.clock.step().is_err() {
-            return false;
+    /// Whether of two cells that may come near each other that of A is divided: the larger one; of two pieces that their bends alone bring near
+    /// each other, along the direction in which they are furthest apart, the one that is bent more. Either way every part is compared.
+    #[inline(always)]
+    fn opens_first(&self, [a, b]: [&ProjectionTree; 2], [i, j]: [usize; 2]) -> bool {
+        let by_size = a.size(i) > b.size(j);
+        let (Some(p), Some(q)) = (a.piece(i), b.piece(j)) else { return by_size };
+        if !(p.is_divisible() && q.is_divisible()) {
+            return p.is_divisible();
         }
-        self.left -= 1;
-        let until = self.clear_for([a, b], cells);
-        if until >= self.clear {
-            return true;
+        if !self.angles {
+            return by_size;
         }
-        let (size_a, size_b) = (a.size(cells[0]), b.size(cells[1]));
-        let open_a = size_a > size_b;
-        let opened =
-            if open_a { a.open(cells[0], &mut self.clock) } else { b.open(cells[1], &mut self.clock) };
-        let Ok(parts) = opened else { return false };
-        if parts.is_empty() {
-            self.clear = until;
-            return self.clear > self.gain;
-        }
-        for part in parts {
-            let pair = if open_a { [part, cells[1]] } else { [cells[0], part] };
-            if !self.visit([a, b], pair) {
-                return false;
-            }
-        }
-        true
+        let steep = self.screw.steepness(0.5 * p.near.max(q.near));
+        let along = across_sides([p, q]);
+        let WidestGap { direction: k, gap, first_is_below } =
+            along.widest([&p.reach(&along), &q.reach(&along)], self.shift, steep);
+        let [p, q] = [p, q].map(|piece| piece.bends(along.alpha[k], along.beta[k]));
+        let bends = if first_is_below { [p.above, q.below] } else { [p.below, q.above] };
+        let apart_unbent = gap + bends[0] + bends[1] > 0.0;
+        if bends[0] == bends[1] || !apart_unbent { by_size } else { bends[0] > bends[1] }
     }
 
     /// For how long the parts stay further apart than the level; at most the length of the span.
+    #[inline(always)]
     fn clear_for(&self, trees: [&ProjectionTree; 2], cells: [usize; 2]) -> f64 {
         let screw = self.screw;
         let (a, b) = (&trees[0].cells[cells[0]].projection, &trees[1].cells[cells[1]].projection);
-        let mut best = self.heights_clear_for([a.height, b.height]);
+        let heights = self.heights_clear_for([a.height, b.height]);
         // Points that are within ℓ of each other, ℓ at most half of ρ there, differ in F by at most |∇F| ℓ, with
         // |∇F|² = α² + β²(1 + h²/(ρ/2)²): ∇ρ and ∇φ are at right angles.
         let rho = 0.5 * a.near.max(b.near);
         if rho <= 0.0 {
-            return best;
+            return heights;
         }
-        let steep = screw.steepness(rho);
-        let slack = a.slack + b.slack;
-        let mut apart: f64 = 0.0;
-        let mut take = |distance: f64, rate: f64| {
-            if rate == 0.0 {
-                apart = if distance > apart { distance } else { apart };
-            } else {
-                best = best.max(self.clear_while(distance.min(rho) - slack, rate));
-            }
-        };
+        let [steep, slack] = [screw.steepness(rho), a.slack + b.slack];
         // What has no angles has no ends along directions other than ρ.
-        let (distances, lengths) = DIRECTIONS.distances([&a.slabs, &b.slabs], self.shift, steep);
-        for (j, distance) in distances.into_iter().enumerate() {
-            take(distance, self.rate(DIRECTIONS.beta[j], lengths[j]));
-        }
+        let clear = heights.max(self.clear_along(&DIRECTIONS, [&a.slabs, &b.slabs], [rho, steep, slack]));
         let pieces = [0, 1].map(|k| trees[k].piece(cells[k]).filter(|_| self.angles));
-        if let [Some(p), Some(q)] = pieces {
-            let along = across_sides([p, q]);
-            let slabs = [&p.reach(&along), &q.reach(&along)];
-            let (distances, lengths) = along.distances(slabs, self.shift, steep);
-            for (j, distance) in distances.into_iter().enumerate() {
-                take(distance, self.rate(along.beta[j], lengths[j]));
+        match pieces {
+            // What is clear for as long as the earliest pair needs no further direction.
+            [Some(p), Some(q)] if clear < self.clear => {
+                let along = across_sides([p, q]);
+                let slabs = [&p.reach(&along), &q.reach(&along)];
+                clear.max(self.clear_along(&along, slabs, [rho, steep, slack]))
             }
+            _ => clear,
         }
-        best.max(self.clear_while(apart.min(rho) - slack, 0.0))
+    }
+
+    /// For how long one of the directions keeps the parts further apart than the level.
+    #[inline(always)]
+    fn clear_along<const N: usize>(
+        &self,
+        along: &Directions<N>,
+        slabs: [&Slabs<N>; 2],
+        [rho, steep, slack]: [f64; 3],
+    ) -> f64 {
+        let (distances, lengths) = along.distances(slabs, self.shift, steep);
+        if self.screw.slide == 0.0 {
+            let apart = distances.into_iter().fold(0.0, |a: f64, b| if b > a { b } else { a });
+            return self.clear_while(apart.min(rho) - slack, 0.0);
+        }
+        let clear = |j: usize| {
+            // A direction of no length says nothing.
+            let distance = if distances[j] > 0.0 { distances[j].min(rho) } else { 0.0 };
+            self.clear_while(distance - slack, self.rate(along.beta[j], lengths[j]))
+        };
+        (0..N).map(clear).fold(0.0, f64::max)
     }
 
     /// How fast the distance along a direction changes when the climb is left out of h.
+    #[inline(always)]
     fn rate(&self, beta: f64, length: f64) -> f64 {
         (beta * self.screw.slide).abs() * UP / length
     }
 
     /// For how long points that the common screw alone would keep `apart`, less what they approach at a rate, do not come within the
     /// level.
+    #[inline(always)]
     fn clear_while(&self, apart: f64, rate: f64) -> f64 {
         let room = apart - self.level - self.screw.offset;
         let drift = (self.screw.drift + rate) * UP;
@@ -307,6 +359,7 @@ impl Walk<'_> {
 }
 
 /// Across the sides of both projections.
+#[inline(always)]
 fn across_sides(pieces: [&Piece; 2]) -> Directions<6> {
     let mut along = Directions { alpha: [0.0; 6], beta: [0.0; 6] };
     for (k, piece) in pieces.into_iter().enumerate() {

@@ -58,7 +58,7 @@ pub(super) struct SweptBody<'a> {
     pub(super) spins: bool,
     /// Angular velocity that a body at rest has after all.
     pub(super) turning: DVec3,
-    /// Of each box, by number.
+    /// Of each box, by number; empty until the body is [measured](Self::measure).
     pub(super) annuli: Vec<AnnularBound>,
 }
 
@@ -147,6 +147,7 @@ impl<'a> SweptBody<'a> {
         }
     }
 
+    /// A box. As long as the body is not measured its annulus is that of the box, without the roundings: an estimate.
     pub(super) fn part(&self, index: u32) -> SweptPart<'_> {
         let (node, lane) = (&self.body.tree.nodes()[index as usize / WIDTH], index as usize % WIDTH);
         let boxed = node.oriented_box(lane);
@@ -162,7 +163,19 @@ impl<'a> SweptBody<'a> {
         let axes = boxed.axes.map(|axis| self.turn(DVec3::from_array(axis.map(f64::from))));
         let half = boxed.half_extent.map(|h| f64::from(h) * unit);
         let radius = f64::from(boxed.radius) * unit;
-        let annulus = self.annuli[index as usize];
+        let annulus = match (self.annuli.get(index as usize), &corners) {
+            (Some(annulus), _) => *annulus,
+            (None, Some(corners)) => AnnularBound::of(&corners.map(self.to_axis_coordinates()), self.spins),
+            (None, None) => {
+                let [height, extent] = [
+                    self.axis.dot(center),
+                    axes.iter().zip(half).map(|(axis, half)| half * self.axis.dot(*axis).abs()).sum(),
+                ];
+                let distance = (center - self.axis * height).length();
+                let near = (distance - radius).max(0.0);
+                AnnularBound { low: height - extent, high: height + extent, near, far: distance + radius }
+            }
+        };
         let reach =
             corners.map_or_else(|| self.reach_from_spin(&[center]) + radius, |c| self.reach_from_spin(&c));
         SweptPart { body: self, annulus, center, axes, half, radius, corners, below, reach }
@@ -198,6 +211,13 @@ pub(super) struct SweptPart<'b> {
 }
 
 impl SweptPart<'_> {
+    /// The boxes that it consists of, by number.
+    pub(super) fn children(&self) -> std::ops::Range<u32> {
+        let Below::Node(node) = self.below else { return 0..0 };
+        let first = node * WIDTH as u32;
+        first..first + self.body.body.tree.nodes()[node as usize].used
+    }
+
     /// How far the part's swept volume reaches along a unit direction, from the reference point.
     pub(super) fn reach(&self, n: DVec3) -> f64 {
         // Each point is at most `far` from the axis at a height of the range.

@@ -180,6 +180,7 @@ impl<'s> Search<'s> {
             least_gain: self.scene.longest.min(self.scene.end - now),
             most_work: effort::most_swept(self.work()),
             most_a_triangle: 0,
+            most_before: effort::swept_before(triangle_count(self.scene)),
             budget: self.limits.most_tests.saturating_sub(self.work()),
             stop: self.limits.stop,
             witnesses: self.scratch.last_tested,

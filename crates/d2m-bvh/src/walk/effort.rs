@@ -12,6 +12,7 @@
 //! | a pair followed at once | when it is handed out | its time grew by 1/16, or 64 steps when out of turn | `pairs` |
 //! | a fresh frame | the time grew by 1/128, or by 1/16 when the level is grazed | – | `best_first` |
 //! | swept volumes, then screws | work of 256 and 1/8 test a triangle; 256 and one a triangle when 1/16 of the sub-window is done | after a success at a quarter more, else at eight times the work | `skip` |
+//! | swept volumes that meet, by boxes | before bodies are measured | a pair for 32 triangles | `skip` |
 //! | pairs of parts along a screw | – | a quarter of the work, and three for each triangle that may be near the other body | `skip` |
 //! | planes between crowds | 4096 pairs wait, or 1024 batches | twice as many, and as much other work as it took | `crowd` |
 //! | spans of time, divided | 64 sub-windows | 256 pairs in a span | `time_split` |
@@ -147,6 +148,14 @@ pub(crate) const fn first_sweep_on_its_way(triangles: u64, patience: u64) -> u64
 pub(crate) const fn most_swept(work: u64) -> u64 {
     work + FIRST_SWEEP
 }
+
+/// Pairs of parts whose sweeps are compared before bodies of so many triangles together are measured: a tenth of the time that this takes.
+pub(crate) const fn swept_before(triangles: u64) -> u64 {
+    triangles / TRIANGLES_A_SWEPT_PAIR
+}
+
+/// See [`swept_before`].
+const TRIANGLES_A_SWEPT_PAIR: u64 = 32;
 
 /// Node tests in the time of one comparison of two parts along a screw.
 const TESTS_A_SCREW_PAIR: u64 = 4;

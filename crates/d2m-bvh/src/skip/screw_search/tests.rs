@@ -13,6 +13,7 @@ const LIMITS: SkipLimits = SkipLimits {
     least_gain: 0.0,
     most_work: 1 << 13,
     most_a_triangle: 0,
+    most_before: 0,
     budget: u64::MAX,
     stop: Stop::NEVER,
     witnesses: [0, 0],
@@ -114,6 +115,38 @@ fn turns_in_place_that_climb_keep_bodies_apart() {
     assert!(won > 400, "{won}");
 }
 
+/// A spoke under a short chord of a rim: the spoke is larger, but it is the chord that is nearer to the axis than its corners are.
+#[test]
+fn of_two_pieces_the_one_whose_bend_counts_is_divided() {
+    let spoke = [DVec3::X * 0.5, DVec3::X * 0.9999, DVec3::new(0.5, 0.0, 0.5)];
+    let chord = [(-0.1, 0.0), (0.1, 0.0), (0.1, 0.01)].map(|(y, z)| DVec3::new(1.0, y, z));
+    let tree = MeshTree::new(TriMesh::point(DVec3::X).unwrap());
+    let turn = ConstantTwist::REST.with_angular_velocity(DVec3::Z);
+    let bodies = [(&tree, turn), (&tree, ConstantTwist::REST)];
+    let scene = MovingScene::new(bodies[0], bodies[1], Window::UNIT, &QueryOptions::default());
+    let screw = Screw::new(&scene, 0.0).unwrap();
+    let mut clock = Meter::until(Stop::NEVER);
+    let [spoke, chord] = [spoke, chord].map(|corners| {
+        let triangle = SeenTriangle { vertices: [0, 1, 2], near: AnnularBound::of(&corners, true).near };
+        let mut vertices = PlacedVertices::new(corners.into_iter());
+        BodyProjections::try_new(&screw, &mut vertices, &[triangle], &mut clock).unwrap().with_angles
+    });
+    let walk = Walk {
+        screw: &screw,
+        shift: 0.0,
+        angles: true,
+        level: 1e-3,
+        length: 1.0,
+        clear: 1.0,
+        gain: 0.0,
+        left: 1,
+        clock,
+    };
+    assert!(spoke.size(0) > chord.size(0));
+    assert!(!walk.opens_first([&spoke, &chord], [0, 0]));
+    assert!(walk.opens_first([&chord, &spoke], [0, 0]));
+}
+
 /// The offset until which the screw alone proves two triangles apart, A spinning at 6 while it climbs.
 fn clear_until(a: [DVec3; 3], b: [DVec3; 3], climb: f64) -> Option<f64> {
     let [a, b] = [a, b].map(|t| MeshTree::new(TriMesh::try_new(t.to_vec(), vec![[0, 1, 2]]).unwrap()));
@@ -190,22 +223,24 @@ fn what_comes_near_late_is_projected() {
     assert!(until.is_some_and(|until| (0.74..=0.75).contains(&until)), "{until:?}");
 }
 
+/// Rings of vertices about z, one for each radius, at two heights in turn, and the triangles between them.
+fn ring(around: u32, radii: &[f64], z: [f64; 2]) -> MeshTree {
+    let rows = radii.len() as u32;
+    let vertices = (0..around * rows).map(|k| {
+        let (angle, row) = (f64::from(k % around) * 2.0 * PI / f64::from(around), k / around);
+        let height = if row % 2 == 0 { z[0] } else { z[1] };
+        DVec3::new(angle.cos(), angle.sin(), 0.0) * radii[row as usize] + DVec3::Z * height
+    });
+    let triangles = (0..around * (rows - 1)).flat_map(|k| {
+        let next = k / around * around + (k + 1) % around;
+        [[k, next, k + around], [next, next + around, k + around]]
+    });
+    MeshTree::new(TriMesh::try_new(vertices.collect(), triangles.collect()).unwrap())
+}
+
 /// A ring that turns about a post, and is wide: only its inner rim is near the post, and only that is projected.
 #[test]
 fn what_is_never_near_is_not_projected() {
-    let ring = |around: u32, radii: &[f64], z: [f64; 2]| {
-        let rows = radii.len() as u32;
-        let vertices = (0..around * rows).map(|k| {
-            let (angle, row) = (f64::from(k % around) * 2.0 * PI / f64::from(around), k / around);
-            let height = if row % 2 == 0 { z[0] } else { z[1] };
-            DVec3::new(angle.cos(), angle.sin(), 0.0) * radii[row as usize] + DVec3::Z * height
-        });
-        let triangles = (0..around * (rows - 1)).flat_map(|k| {
-            let next = k / around * around + (k + 1) % around;
-            [[k, next, k + around], [next, next + around, k + around]]
-        });
-        MeshTree::new(TriMesh::try_new(vertices.collect(), triangles.collect()).unwrap())
-    };
     let post = ring(24, &[1.0, 1.0], [-3.0, 3.0]);
     let wide = ring(64, &[1.01, 1.2, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0], [0.0, 0.1]);
     let triangles = (post.mesh().triangle_count() + wide.mesh().triangle_count()) as u64;
@@ -253,9 +288,10 @@ fn attempts_end_with_their_time() {
         assert_eq!(skip.clear_until.is_none(), ends, "{skip:?}");
         let screw = Screw::new(&scene, 0.0).unwrap();
         let mut clock = Meter::until(stop);
-        let (places, triangles) = (a.mesh().vertices().to_vec(), a.mesh().triangles());
-        let mut vertices = PlacedVertices::new(places);
-        let projected = BodyProjections::try_new(&screw, &mut vertices, triangles, &mut clock);
+        let mut vertices = PlacedVertices::new(a.mesh().vertices().iter().copied());
+        let seen = |&vertices| SeenTriangle { vertices, near: 1.0 };
+        let triangles: Vec<_> = a.mesh().triangles().iter().map(seen).collect();
+        let projected = BodyProjections::try_new(&screw, &mut vertices, &triangles, &mut clock);
         assert_eq!(projected.is_err(), ends);
     }
 }
