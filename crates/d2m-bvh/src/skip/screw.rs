@@ -26,12 +26,12 @@ pub(super) struct Screw {
     pub(super) climb: f64,
     /// Speed at which φ changes: the climb when it is left out of h.
     pub(super) slide: f64,
-    /// Distance of the two axes at the start and what the angle between them moves points by, and how fast the rest of
-    /// the true motion leaves the screw.
-    pub(super) offset: f64,
-    pub(super) drift: f64,
-    /// What the angle between the axes moves points by, whatever the direction.
+    /// Distance of the two axes at the start, and how fast it grows: across the axis.
+    pub(super) across_now: f64,
+    pub(super) across_rate: f64,
+    /// What the angle between the axes moves points by, and how fast the rest of the true motion leaves the screw, whatever the direction.
     pub(super) tilted: f64,
+    pub(super) drift: f64,
 }
 
 impl Screw {
@@ -62,7 +62,8 @@ impl Screw {
         let tilted = TILT_FACTOR * tilt * reach;
         // The speeds as computed err by roundings of the speeds of both bodies, and by what the tilt takes from them.
         let rate_error = (tilt * tilt + RATE_ERROR) * spins;
-        let climb_error = RATE_ERROR * velocity.length();
+        // Once for the climb, once for what is left along the axis of the velocity across it.
+        let climb_error = 2.0 * RATE_ERROR * velocity.length();
         let speed_error = rate_error * reach + climb_error;
         (h.is_finite() && lead.is_finite()).then_some(Self {
             axis,
@@ -71,9 +72,10 @@ impl Screw {
             lead,
             climb,
             slide: 0.0,
-            offset: (apart + tilted) * UP,
-            drift: (flat(velocity) + speed_error) * UP,
+            across_now: apart * UP,
+            across_rate: flat(velocity) * UP,
             tilted: tilted * UP,
+            drift: speed_error * UP,
         })
     }
 

@@ -25,8 +25,28 @@ const MOST_TRIANGLES: usize = 1 << 18;
 /// divided by a steepness of at least h over the distance. Triangles have distances within a factor of 100
 /// ([`BESIDE`](super::orbits::BESIDE)).
 const PROJECTION_ERROR: f64 = 16_384.0 * UNIT_F64;
+/// Bends that are smaller than the gap by this factor gain little time if they are divided.
+const LITTLE: f64 = 64.0;
 /// Most leads that two projections may be shifted by.
 const MOST_LEADS: f64 = 64.0;
+
+/// How fast what leaves the common screw takes a gap.
+#[derive(Clone, Copy, Debug)]
+enum Closing {
+    /// As fast as it moves.
+    AnyDirection,
+    /// This part of what moves across the axis counts, and another rate.
+    Along { across: f64, rate: f64 },
+}
+
+/// What is done with two cells that may come near each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Division {
+    OfA,
+    OfB,
+    /// The gap between two pieces is so many times as wide as their bends that dividing them would widen it by little.
+    GainsLittle,
+}
 
 /// The search through two trees of projections.
 struct Walk<'s> {
@@ -178,7 +198,15 @@ impl Task for WholeShift<'_, '_> {
             if until >= walk.clear {
                 continue;
             }
-            let open_a = walk.opens_first([&*a, &*b], cells);
+            let open_a = match walk.division([&*a, &*b], cells) {
+                Division::OfA => true,
+                Division::OfB => false,
+                Division::GainsLittle if until > walk.gain => {
+                    walk.clear = until;
+                    continue;
+                }
+                Division::GainsLittle => a.size(cells[0]) > b.size(cells[1]),
+            };
             let opened =
                 if open_a { a.open(cells[0], &mut walk.clock) } else { b.open(cells[1], &mut walk.clock) };
             let Ok(parts) = opened else { return false };
@@ -207,7 +235,8 @@ impl Walk<'_> {
                 let [a, b] = if one == 0 { [annulus, rest] } else { [rest, annulus] };
                 let apart = (b.near - a.far).max(a.near - b.far);
                 let heights = [a, b].map(|part| Range { low: part.low, high: part.high });
-                self.clear_while(apart, 0.0).max(self.heights_clear_for(heights)) < self.length
+                self.clear_while(apart, Closing::AnyDirection).max(self.heights_clear_for(heights))
+                    < self.length
             });
         }
         near
@@ -253,7 +282,7 @@ impl Walk<'_> {
                 let rho = 0.5 * first.near.max(second.near);
                 let slack = first.slack + second.slack;
                 let apart = lead / self.screw.steepness(rho);
-                self.clear = self.clear.min(self.clear_while(apart.min(rho) - slack, 0.0));
+                self.clear = self.clear.min(self.clear_while(apart.min(rho) - slack, Closing::AnyDirection));
             }
             for k in leads.0 as i64..=leads.1 as i64 {
                 self.shift = k as f64 * lead;
@@ -265,14 +294,15 @@ impl Walk<'_> {
         true
     }
 
-    /// Whether of two cells that may come near each other that of A is divided: the larger one; of two pieces that their bends alone bring near
-    /// each other, along the direction in which they are furthest apart, the one that is bent more. Either way every part is compared.
+    /// Which of two cells that may come near each other is divided: the larger one; of two pieces that their bends alone bring near each other,
+    /// along the direction in which they are furthest apart, the one that is bent more. Whatever comes out, every part is compared.
     #[inline(always)]
-    fn opens_first(&self, [a, b]: [&ProjectionTree; 2], [i, j]: [usize; 2]) -> bool {
-        let by_size = a.size(i) > b.size(j);
+    fn division(&self, [a, b]: [&ProjectionTree; 2], [i, j]: [usize; 2]) -> Division {
+        let of_a = |first: bool| if first { Division::OfA } else { Division::OfB };
+        let by_size = of_a(a.size(i) > b.size(j));
         let (Some(p), Some(q)) = (a.piece(i), b.piece(j)) else { return by_size };
         if !(p.is_divisible() && q.is_divisible()) {
-            return p.is_divisible();
+            return of_a(p.is_divisible());
         }
         if !self.angles {
             return by_size;
@@ -283,8 +313,14 @@ impl Walk<'_> {
             along.widest([&p.reach(&along), &q.reach(&along)], self.shift, steep);
         let [p, q] = [p, q].map(|piece| piece.bends(along.alpha[k], along.beta[k]));
         let bends = if first_is_below { [p.above, q.below] } else { [p.below, q.above] };
-        let apart_unbent = gap + bends[0] + bends[1] > 0.0;
-        if bends[0] == bends[1] || !apart_unbent { by_size } else { bends[0] > bends[1] }
+        let both = bends[0] + bends[1];
+        if LITTLE * both < gap {
+            Division::GainsLittle
+        } else if bends[0] == bends[1] || gap + both <= 0.0 {
+            by_size
+        } else {
+            of_a(bends[0] > bends[1])
+        }
     }
 
     /// For how long the parts stay further apart than the level; at most the length of the span.
@@ -323,16 +359,27 @@ impl Walk<'_> {
         [rho, steep, slack]: [f64; 3],
     ) -> f64 {
         let (distances, lengths) = along.distances(slabs, self.shift, steep);
-        if self.screw.slide == 0.0 {
+        if self.screw.slide == 0.0 && !self.leaves_screw() {
             let apart = distances.into_iter().fold(0.0, |a: f64, b| if b > a { b } else { a });
-            return self.clear_while(apart.min(rho) - slack, 0.0);
+            return self.clear_while(apart.min(rho) - slack, Closing::AnyDirection);
         }
+        let per_radius = self.screw.h / rho;
         let clear = |j: usize| {
             // A direction of no length says nothing.
-            let distance = if distances[j] > 0.0 { distances[j].min(rho) } else { 0.0 };
-            self.clear_while(distance - slack, self.rate(along.beta[j], lengths[j]))
+            let distance = if distances[j] > 0.0 { distances[j] } else { 0.0 };
+            let (alpha, beta) = (along.alpha[j], along.beta[j]);
+            let across =
+                (alpha * alpha + beta * beta * per_radius * per_radius).sqrt() * UP / lengths[j] * UP;
+            self.clear_while(distance - slack, Closing::Along { across, rate: self.rate(beta, lengths[j]) })
         };
-        (0..N).map(clear).fold(0.0, f64::max)
+        let clear = (0..N).map(clear).fold(0.0, f64::max);
+        clear.min(self.clear_while(rho - slack, Closing::AnyDirection))
+    }
+
+    /// Whether the bodies leave the common screw across its axis by more than the level: else no direction is better for it than another one.
+    #[inline(always)]
+    fn leaves_screw(&self) -> bool {
+        self.screw.across_now + self.screw.across_rate * self.length > self.level
     }
 
     /// How fast the distance along a direction changes when the climb is left out of h.
@@ -341,12 +388,16 @@ impl Walk<'_> {
         (beta * self.screw.slide).abs() * UP / length
     }
 
-    /// For how long points that the common screw alone would keep `apart`, less what they approach at a rate, do not come within the
-    /// level.
+    /// For how long points that the common screw alone would keep `apart` do not come within the level.
     #[inline(always)]
-    fn clear_while(&self, apart: f64, rate: f64) -> f64 {
-        let room = apart - self.level - self.screw.offset;
-        let drift = (self.screw.drift + rate) * UP;
+    fn clear_while(&self, apart: f64, closing: Closing) -> f64 {
+        let screw = self.screw;
+        let (across, rate) = match closing {
+            Closing::AnyDirection => (1.0, 0.0),
+            Closing::Along { across, rate } => (across, rate),
+        };
+        let room = apart - self.level - screw.tilted - across * screw.across_now * UP;
+        let drift = (screw.drift + across * screw.across_rate * UP + rate) * UP;
         if room.is_nan() || room <= 0.0 {
             // As long as nothing at all.
             0.0

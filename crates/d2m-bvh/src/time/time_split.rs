@@ -13,7 +13,7 @@ use crate::pair::boxes::whole_span::{PlacedPose, SpanFrame};
 use crate::pair::motion::frame::{FAR_ANGLE, PlacedFrame, RelativeMotion};
 use crate::pair::scene::{MovingScene, SceneBody, WINDOW_ANGLE};
 use crate::walk::best_first::{OneWindow, expander};
-use crate::walk::effort::{FEW_SUB_WINDOWS, LAST_TESTS, MOST_PAIRS_OF_SPAN};
+use crate::walk::effort::{LAST_TESTS, MOST_PAIRS_OF_SPAN};
 use crate::walk::queue::{Item, WaitingSpan, WaitingSpans};
 use crate::walk::state::{Outcome, Search, Step, SubWindow};
 use d2m_lanes::{Lanes, Task, run_on};
@@ -90,7 +90,7 @@ impl Grid {
 impl Search<'_> {
     /// Whether spans longer than a sub-window come first.
     fn divides_time(&self) -> bool {
-        !self.limits.only_start && FEW_SUB_WINDOWS * self.scene.longest < self.scene.end
+        !self.limits.only_start && !self.has_few_windows()
     }
 
     /// The longest span that is begun at the root.

@@ -146,7 +146,7 @@ impl<'s> Search<'s> {
             return None;
         }
         let until = self.sweep(&state.motion, &state.frame, now(), batch.items()[0].boxes)?;
-        (until >= end).then_some(Step::ClearUntil(until))
+        (until >= end || self.has_few_windows()).then_some(Step::ClearUntil(until))
     }
 
     /// An offset up to which the swept volumes of the bodies are apart from `now` on; none if they are not for long. `boxes`:
@@ -190,7 +190,9 @@ impl<'s> Search<'s> {
         self.scene.conclude_whole(Place::Sweep, now, skip.clear_until);
         if skip.clear_until.is_none() {
             let swept = skip.work;
+            let part = if self.has_few_windows() { effort::LEAST_PART_OF_A_WINDOW } else { 1.0 };
             let limits = SkipLimits {
+                least_gain: part * limits.least_gain,
                 most_work: effort::most_screw_pairs(self.work()),
                 most_a_triangle: effort::SCREW_PAIRS_A_TRIANGLE,
                 budget: limits.budget.saturating_sub(swept),

@@ -178,6 +178,10 @@ pub(crate) const fn sweep_after_failure(work: u64) -> u64 {
     8 * work
 }
 
+/// What a skip along a screw has to gain where the search may go on from any time, as a part of a sub-window: bodies that drift off their common
+/// screw meet soon.
+pub(crate) const LEAST_PART_OF_A_WINDOW: f64 = 0.25;
+
 /// As many pairs that wait are a crowd, and as many batches in one window make one: several times as many as in
 /// ordinary queries of a million triangles.
 pub(crate) const CROWD: usize = 1 << 12;

@@ -181,6 +181,11 @@ impl<'s> Search<'s> {
         Some(SubWindow { start, end: (start + self.longest_span()).min(end) })
     }
 
+    /// Does the query have so few sub-windows that each is searched from the roots? Then the search may go on from any time in one.
+    pub(crate) fn has_few_windows(&self) -> bool {
+        effort::FEW_SUB_WINDOWS * self.scene.longest >= self.scene.end
+    }
+
     /// What the search has done, in node tests.
     pub(crate) fn work(&self) -> u64 {
         self.scratch.counts.work()

@@ -99,7 +99,7 @@ fn projections_that_are_apart_mean_bodies_that_are_apart() {
 #[test]
 fn mutants_of_the_screw_die() {
     assert!(least_ratio(2400, |screw| screw.h *= 0.9).0 < 0.99, "another pitch");
-    assert!(least_ratio(2400, |screw| screw.drift = 0.0).0 < 0.99, "no drift");
+    assert!(least_ratio(2400, |screw| screw.across_rate = 0.0).0 < 0.99, "no drift");
     assert!(least_ratio(2400, |screw| screw.climb *= 0.5).0 < 0.99, "half of the climb");
     let still = |screw: &mut Screw| {
         *screw = screw.turn_in_place();
@@ -119,6 +119,7 @@ fn turns_in_place_that_climb_keep_bodies_apart() {
 #[test]
 fn of_two_pieces_the_one_whose_bend_counts_is_divided() {
     let spoke = [DVec3::X * 0.5, DVec3::X * 0.9999, DVec3::new(0.5, 0.0, 0.5)];
+    let short = [DVec3::X * 0.3, DVec3::X * 0.5, DVec3::new(0.3, 0.0, 0.5)];
     let chord = [(-0.1, 0.0), (0.1, 0.0), (0.1, 0.01)].map(|(y, z)| DVec3::new(1.0, y, z));
     let tree = MeshTree::new(TriMesh::point(DVec3::X).unwrap());
     let turn = ConstantTwist::REST.with_angular_velocity(DVec3::Z);
@@ -126,7 +127,7 @@ fn of_two_pieces_the_one_whose_bend_counts_is_divided() {
     let scene = MovingScene::new(bodies[0], bodies[1], Window::UNIT, &QueryOptions::default());
     let screw = Screw::new(&scene, 0.0).unwrap();
     let mut clock = Meter::until(Stop::NEVER);
-    let [spoke, chord] = [spoke, chord].map(|corners| {
+    let [spoke, short, chord] = [spoke, short, chord].map(|corners| {
         let triangle = SeenTriangle { vertices: [0, 1, 2], near: AnnularBound::of(&corners, true).near };
         let mut vertices = PlacedVertices::new(corners.into_iter());
         BodyProjections::try_new(&screw, &mut vertices, &[triangle], &mut clock).unwrap().with_angles
@@ -143,8 +144,9 @@ fn of_two_pieces_the_one_whose_bend_counts_is_divided() {
         clock,
     };
     assert!(spoke.size(0) > chord.size(0));
-    assert!(!walk.opens_first([&spoke, &chord], [0, 0]));
-    assert!(walk.opens_first([&chord, &spoke], [0, 0]));
+    assert_eq!(walk.division([&spoke, &chord], [0, 0]), Division::OfB);
+    assert_eq!(walk.division([&chord, &spoke], [0, 0]), Division::OfA);
+    assert_eq!(walk.division([&chord, &short], [0, 0]), Division::GainsLittle);
 }
 
 /// The offset until which the screw alone proves two triangles apart, A spinning at 6 while it climbs.
@@ -155,6 +157,21 @@ fn clear_until(a: [DVec3; 3], b: [DVec3; 3], climb: f64) -> Option<f64> {
     let options = QueryOptions::default().with_tolerance(1e-7);
     let scene = MovingScene::new((&a, screw), (&b, ConstantTwist::REST), Window::UNIT, &options);
     screw_clear_until(&scene, 0.0, &LIMITS).clear_until
+}
+
+/// A face of a screw and one of its nut, a third of the lead apart, and the screw drifts across its axis by twice that gap: along a flat thread
+/// a tenth of the drift counts.
+#[test]
+fn drift_across_the_axis_closes_little_of_a_gap_along_it() {
+    let face = |z: f64| [(1.0, 0.0), (1.0, 0.01), (1.01, 0.0)].map(|(x, y)| DVec3::new(x, y, z + y));
+    let [a, b] =
+        [0.0, 0.1].map(|z| MeshTree::new(TriMesh::try_new(face(z).to_vec(), vec![[0, 1, 2]]).unwrap()));
+    let screw = ConstantTwist::REST
+        .with_angular_velocity(DVec3::Z * 6.0)
+        .with_linear_velocity(DVec3::new(0.2, 0.0, 0.3));
+    let options = QueryOptions::default().with_tolerance(1e-7);
+    let scene = MovingScene::new((&a, screw), (&b, ConstantTwist::REST), Window::UNIT, &options);
+    assert_eq!(screw_clear_until(&scene, 0.0, &LIMITS).clear_until, Some(1.0));
 }
 
 /// The end of a shaft has faces that meet in the axis. What turns past its rim, as a thread in a nut does, passes its
