@@ -174,6 +174,23 @@ fn drift_across_the_axis_closes_little_of_a_gap_along_it() {
     assert_eq!(screw_clear_until(&scene, 0.0, &LIMITS).clear_until, Some(1.0));
 }
 
+/// A quarter of a turn later the drift is along the circle: it takes the face of a screw as far beside its helix as it takes the angle back.
+#[test]
+fn drift_across_the_axis_turns_too() {
+    let motion = ConstantTwist::REST
+        .with_angular_velocity(DVec3::Z * 6.0)
+        .with_linear_velocity(DVec3::new(-1.2, 0.0, 6.0));
+    let met_at = PI / 12.0;
+    let place = |p: DVec3| DQuat::from_rotation_z(6.0 * met_at) * p + motion.linear_velocity() * met_at;
+    let face = [(0.0, 0.0), (0.01, 0.0), (0.0, 0.01)].map(|(y, z)| DVec3::new(1.0, y, z));
+    let other = face.map(|p| place(DVec3::new(p.x, 0.01 - p.y, 0.01 - p.z)));
+    let [a, b] = [face, other].map(|t| MeshTree::new(TriMesh::try_new(t.to_vec(), vec![[0, 1, 2]]).unwrap()));
+    let options = QueryOptions::default().with_tolerance(1e-7);
+    let scene = MovingScene::new((&a, motion), (&b, ConstantTwist::REST), Window::UNIT, &options);
+    let until = screw_clear_until(&scene, 0.0, &LIMITS).clear_until;
+    assert!(until.is_some_and(|until| (0.2 * met_at..met_at).contains(&until)), "{until:?}");
+}
+
 /// The end of a shaft has faces that meet in the axis. What turns past its rim, as a thread in a nut does, passes its
 /// height beside it, or through it.
 #[test]
