@@ -235,8 +235,9 @@ impl Walk<'_> {
                 let [a, b] = if one == 0 { [annulus, rest] } else { [rest, annulus] };
                 let apart = (b.near - a.far).max(a.near - b.far);
                 let heights = [a, b].map(|part| Range { low: part.low, high: part.high });
-                self.clear_while(apart, Closing::AnyDirection).max(self.heights_clear_for(heights))
-                    < self.length
+                let clear =
+                    self.clear_while(apart, Closing::AnyDirection).max(self.heights_clear_for(heights));
+                clear < self.length
             });
         }
         near
