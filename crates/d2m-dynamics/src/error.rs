@@ -246,7 +246,8 @@ pub enum SimulationError {
 #[non_exhaustive]
 pub enum StepError {
     /// Kinematic bodies crush a dynamic body. That is proven: there are multipliers of the contacts of all that is squeezed, as they were
-    /// measured, whose combination no velocities obey (Farkas), none that would be a thousand times as fast as what closes in.
+    /// measured, whose combination no motion obeys (Farkas) that is no more than 128 times as fast as what closes in, while that uses up what
+    /// room is left.
     #[error("at time {time}: body {pushing} crushes body {crushed}, which cannot give way")]
     Crushed {
         /// The kinematic body.

@@ -328,6 +328,34 @@ fn what_rounding_decides_is_not_called_crushed() {
     assert!(time > 1.0 - 1e-9 && time <= 1.0, "{time}");
 }
 
+/// Two plates close in on spheres in one line, which could roll out of it: the way out does not show in the velocities at the start.
+#[test]
+fn spheres_in_a_row_are_not_crushed() {
+    let mut simulation =
+        Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO).with_gap(1e-4)).unwrap();
+    let point = Arc::new(MeshTree::new(TriMesh::point(DVec3::ZERO).unwrap()));
+    let mass = MassProperties::try_new(1.0, DVec3::ZERO, DMat3::IDENTITY * 0.03).unwrap();
+    for k in 0..3 {
+        let place = DVec3::X * (0.3001 + 0.6001 * f64::from(k));
+        let sphere = Body::new(format!("sphere {k}"), Arc::clone(&point)).with_solid(Solid::Surface);
+        simulation
+            .add(
+                &sphere.with_radius(0.3).with_position(place).with_mass(Mass::Given(mass)).with_friction(1.0),
+            )
+            .unwrap();
+    }
+    for (name, x, way) in [("left", -0.1, 0.1), ("right", 1.9004, -0.1)] {
+        simulation.add(&pushed(name, "box?x=0.1&y=1&z=1", DVec3::X * x, DVec3::X * way)).unwrap();
+    }
+    let error = loop {
+        match simulation.step() {
+            Ok(_) => assert!(simulation.time() < 0.5),
+            Err(error) => break error,
+        }
+    };
+    assert!(matches!(error, StepError::Cornered { .. }), "{error:?}");
+}
+
 /// A press stops a thousandth of a gap above three boxes, which lean a little: friction locks them for as long as there is room, and slips then.
 #[test]
 fn boxes_share_what_a_press_leaves() {

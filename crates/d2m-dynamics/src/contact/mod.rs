@@ -19,7 +19,7 @@ mod system;
 
 pub(crate) use accuracy::{Accuracy, Company};
 pub(crate) use impact::impact;
-pub(crate) use infeasible::Squeeze;
+pub(crate) use infeasible::{ASKEW, CROSSING, Squeeze};
 pub(crate) use law::Law;
 pub(crate) use newton::Start;
 pub use point::Material;

@@ -3,12 +3,39 @@
 use super::event::Event;
 use super::{Key, Step};
 use crate::StepError;
-use crate::contact::{ContactPoint, NEAR, SolverBody, Squeeze};
+use crate::contact::{ASKEW, CROSSING, ContactPoint, NEAR, SolverBody, Squeeze};
+use crate::faces::vertices_of;
 use crate::pairs::{AROUND, measure};
 use crate::rigid_body::RigidBody;
 use crate::solved_body::{body_at, still};
 use crate::velocity::Velocity;
+use d2m_feature::FeaturePair;
 use std::collections::{BTreeMap, BTreeSet};
+
+/// Does the direction of a contact turn no faster than its bodies do: as the normal of a face at its features, or across two edges that cross
+/// at no small angle? That between two corners turns anyhow.
+fn is_steady(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) -> bool {
+    // Half of it is for rounding.
+    let most = 0.5 * ASKEW;
+    let meshes = bodies.map(|body| body.tree.mesh());
+    let features = vertices_of(contact.feature, meshes);
+    let turns = bodies.map(|body| body.pose_at(time).rotation);
+    let of_face = |k: usize| {
+        let direction = turns[k].conjugate() * contact.normal;
+        let nearest = bodies[k].faces.nearest(&features[k], direction);
+        nearest.is_some_and(|normal| (normal - direction).length() <= most)
+    };
+    let across_edges = || {
+        let edge = |k: usize| {
+            let [from, to] = [features[k][0], features[k][1]].map(|v| meshes[k].vertices()[v as usize]);
+            turns[k] * (to - from).normalize_or_zero()
+        };
+        let across = edge(0).cross(edge(1));
+        let along = contact.normal * across.dot(contact.normal).signum();
+        across.length() >= CROSSING && (across.normalize_or_zero() - along).length() <= most
+    };
+    of_face(0) || of_face(1) || matches!(contact.feature, FeaturePair::EdgeEdge { .. }) && across_edges()
+}
 
 impl Step<'_> {
     /// The bodies of these events stand still until the end of the step, unless it is proven that something crushes one of them.
@@ -65,8 +92,8 @@ impl Step<'_> {
     }
 
     /// What follows its motion and the body that it presses on, if all that contacts connect with the bodies of these events has no
-    /// velocities with which it keeps apart for as long as that takes to close a gap. A gap is little against the bodies, so that normals
-    /// and arms stay what they are; and what follows its motion goes on as in its present flight, unless its motion has a joint before that.
+    /// motion with which it keeps apart for as long as that takes to close a gap. What follows its motion goes on as in its present flight,
+    /// unless its motion has a joint before that.
     fn proven_crushed(&mut self, time: f64, events: &[Event]) -> Option<[usize; 2]> {
         if !self.sim.bodies.iter().any(RigidBody::is_driven) {
             return None;
@@ -118,6 +145,7 @@ impl Step<'_> {
                 if !contacts.is_empty() {
                     ring.extend([key.0, key.1]);
                 }
+                contacts.retain(|contact| is_steady(contact, [&sim.bodies[key.0], &sim.bodies[key.1]], time));
                 found.insert(key, contacts);
             }
         }

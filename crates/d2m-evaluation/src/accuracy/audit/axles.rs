@@ -23,7 +23,9 @@ struct Axles {
 /// One pair on its axles, and a question about it.
 pub(super) fn axles(case: &Case<'_>) {
     let random = &mut case.random();
-    let gap = random.log_between(1e-9, 0.1);
+    // A tilt about as large as the clearance closes it within a turn: where both are small, axes are still taken for parallel.
+    let closes = random.unit() < 0.5;
+    let gap = if closes { random.log_between(1e-9, 1e-5) } else { random.log_between(1e-9, 0.1) };
     let Axles { surfaces, beside, size, lead } = match random.index(6) {
         0 => plates(random, gap),
         1 => rods(random, gap),
@@ -32,7 +34,7 @@ pub(super) fn axles(case: &Case<'_>) {
         4 => shaft_in_bearing(random, gap),
         _ => wheels_beside_each_other(random, gap),
     };
-    let tilt = tilt(random);
+    let tilt = if closes { leaning(random, [0.2 * gap, 5.0 * gap]) } else { tilt(random) };
     let [one, other] = rates(random);
     // The whole scene anyhow in the world, and of another size.
     let frame = if random.unit() < 0.4 { DQuat::IDENTITY } else { DQuat::from_scaled_axis(random.vector()) };
@@ -85,12 +87,17 @@ pub(super) fn axles(case: &Case<'_>) {
 
 /// The direction of an axle that leans against z by nothing, by one place, or by up to a thousandth.
 fn tilt(random: &mut Random) -> DVec3 {
-    let across = DQuat::from_rotation_z(random.between(0.0, TAU)) * DVec3::X;
     match random.index(8) {
         0 => DVec3::Z,
         1 => DVec3::new(f64::EPSILON * random.signed().signum(), 0.0, 1.0),
-        _ => (DVec3::Z + across * random.log_between(1e-12, 1e-3)).normalize(),
+        _ => leaning(random, [1e-12, 1e-3]),
     }
+}
+
+/// The direction of an axle that leans against z by an angle between these.
+fn leaning(random: &mut Random, [least, most]: [f64; 2]) -> DVec3 {
+    let across = DQuat::from_rotation_z(random.between(0.0, TAU)) * DVec3::X;
+    (DVec3::Z + across * random.log_between(least, most)).normalize()
 }
 
 /// Two rates about the axles: alike, opposite, nearly alike, unlike, or only one.
