@@ -127,13 +127,15 @@ impl PairCache {
         self.apart = Some(Apart { trajectory: *trajectory, room, solids, age: 0.0 });
     }
 
-    /// An attempt for more room has ended.
-    pub(crate) fn attempted(&mut self, proven: bool) {
-        if proven {
-            self.ahead = (2.0 * self.ahead).min(MOST_AHEAD);
-            self.next_rest = 16;
-            return;
-        }
+    /// Proven: along this trajectory the bodies are further apart than a room for more queries all the time.
+    pub(crate) fn found_room(&mut self, trajectory: &RelativeTrajectory, solids: [Solid; 2], room: f64) {
+        self.ahead = (2.0 * self.ahead).min(MOST_AHEAD);
+        self.next_rest = 16;
+        self.found_apart(trajectory, solids, room);
+    }
+
+    /// An attempt to prove such a room has failed.
+    pub(crate) fn found_no_room(&mut self) {
         self.ahead *= 0.25;
         if self.ahead < 2.0 {
             self.ahead = AHEAD;

@@ -202,10 +202,17 @@ mod tests {
     use d2m_motion::{Chain, Joint, JointKind, JointValue, RigidMotion};
     use glam::DQuat;
 
-    fn joint(x: DVec3, axis: DVec3, coefficients: &[f64], turns: bool) -> Joint {
-        let value = JointValue::try_polynomial(coefficients.to_vec()).unwrap();
-        let kind =
-            if turns { JointKind::Revolute { axis, value } } else { JointKind::Prismatic { axis, value } };
+    fn value(coefficients: &[f64]) -> JointValue {
+        JointValue::try_polynomial(coefficients.to_vec()).unwrap()
+    }
+
+    fn turning(x: DVec3, axis: DVec3, coefficients: &[f64]) -> Joint {
+        let kind = JointKind::Revolute { axis, value: value(coefficients) };
+        Joint::try_new(x, DQuat::IDENTITY, kind).unwrap()
+    }
+
+    fn sliding(x: DVec3, axis: DVec3, coefficients: &[f64]) -> Joint {
+        let kind = JointKind::Prismatic { axis, value: value(coefficients) };
         Joint::try_new(x, DQuat::IDENTITY, kind).unwrap()
     }
 
@@ -254,20 +261,20 @@ mod tests {
         let still = ConstantTwist::REST;
         let mut sharpest = [0.0_f64; 6];
         for (kind, joints) in [
-            vec![joint(DVec3::ZERO, DVec3::Z, &[0.0, 1.0, 1.0], false)],
-            vec![joint(DVec3::ZERO, DVec3::Z, &[0.0, 0.0, 1.0], true)],
+            vec![sliding(DVec3::ZERO, DVec3::Z, &[0.0, 1.0, 1.0])],
+            vec![turning(DVec3::ZERO, DVec3::Z, &[0.0, 0.0, 1.0])],
             vec![
-                joint(DVec3::ZERO, DVec3::Z, &[0.3, -2.0], true),
-                joint(DVec3::X, DVec3::Y, &[0.0, 1.0, -3.0], true),
+                turning(DVec3::ZERO, DVec3::Z, &[0.3, -2.0]),
+                turning(DVec3::X, DVec3::Y, &[0.0, 1.0, -3.0]),
             ],
             // A turn at a constant rate about a point that the body does not follow: the pole does not accelerate.
-            vec![joint(DVec3::ZERO, DVec3::Z, &[0.0, 2.0], true), joint(DVec3::X, DVec3::Y, &[0.0], true)],
+            vec![turning(DVec3::ZERO, DVec3::Z, &[0.0, 2.0]), turning(DVec3::X, DVec3::Y, &[0.0])],
             // Across the velocity, and from rest.
             vec![
-                joint(DVec3::ZERO, DVec3::Z, &[0.0, 1.0], false),
-                joint(DVec3::ZERO, DVec3::X, &[0.0, 0.0, 1.0], false),
+                sliding(DVec3::ZERO, DVec3::Z, &[0.0, 1.0]),
+                sliding(DVec3::ZERO, DVec3::X, &[0.0, 0.0, 1.0]),
             ],
-            vec![joint(DVec3::ZERO, DVec3::Z, &[0.0, 0.0, 1.0], true)],
+            vec![turning(DVec3::ZERO, DVec3::Z, &[0.0, 0.0, 1.0])],
         ]
         .into_iter()
         .enumerate()

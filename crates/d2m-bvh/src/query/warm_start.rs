@@ -332,11 +332,12 @@ fn more_room(
     }
     let wider = options.with_min_separation(room);
     let proven = cache.counted(ask(&scene.with_options(&wider), &wider)) == TimeOfContact::Separated;
-    cache.attempted(proven);
     if proven {
-        cache.found_apart(trajectory, scene.solids, room);
+        cache.found_room(trajectory, scene.solids, room);
         #[cfg(feature = "audit")]
         conclude_room(scene, room);
+    } else {
+        cache.found_no_room();
     }
     proven
 }

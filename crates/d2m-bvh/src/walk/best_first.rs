@@ -8,7 +8,7 @@ use super::state::{Outcome, Search, State, Step, SubWindow, triangle_count};
 use crate::Budget;
 use crate::gap::widest_gap::widest_normal;
 use crate::pair::boxes::node_scale::NodeScale;
-use crate::pair::boxes::node_test::NodeFrame;
+use crate::pair::boxes::node_test::{Expanded, NodeFrame};
 use crate::pair::motion::frame::{Frame, RelativeMotion};
 use crate::pair::motion::units::sum_down;
 use crate::pair::scene::MovingScene;
@@ -235,8 +235,8 @@ impl State<'_> {
         self.frame = self.motion.frame::<L::Doubles>(f64::from(key) * self.step);
         let left = time_left(self.limit, key);
         self.node_frames = [
-            NodeFrame::new::<L::Doubles>(&self.frame, &self.expander.scales[0], false, left),
-            NodeFrame::new::<L::Doubles>(&self.frame, &self.expander.scales[1], true, left),
+            NodeFrame::new::<L::Doubles>(&self.frame, &self.expander.scales[0], Expanded::A, left),
+            NodeFrame::new::<L::Doubles>(&self.frame, &self.expander.scales[1], Expanded::B, left),
         ];
         self.frame_key = key;
         if let Some(witness) = self.parting {

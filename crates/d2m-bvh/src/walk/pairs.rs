@@ -111,6 +111,7 @@ impl Search<'_> {
                 return;
             }
         }
+        let start = state.motion.start;
         let mut frame = state.frame;
         let mut steps = 0u32;
         loop {
@@ -153,7 +154,7 @@ impl Search<'_> {
                     // Near at the time of the frame, which may be before what the boxes proved: then it is evaluated again there.
                     if known <= frame.offset {
                         if known < state.limit_offset {
-                            state.find(known, triangles, crossing);
+                            state.find(Found { start, offset: known, triangles, crossing });
                             state.behind =
                                 BackwardCertificate { reversed: frame.reversed::<L::Doubles>(), direction };
                             if self.limits.mode == Mode::Exists {
@@ -168,7 +169,7 @@ impl Search<'_> {
                 frame = state.motion.frame::<L::Doubles>(known);
             } else {
                 // The time left is below the resolution of time itself: no time between would show more.
-                state.find(known, triangles, false);
+                state.find(Found { start, offset: known, triangles, crossing: false });
                 state.behind =
                     BackwardCertificate { reversed: frame.reversed::<L::Doubles>(), ..state.behind };
                 return;

@@ -214,12 +214,12 @@ impl State<'_> {
         KeyRange { now: self.frame_key, limit: self.limit }
     }
 
-    /// A contact at this offset: nothing later matters, and nothing whose key is not below it can be earlier. The step
+    /// A contact: nothing later matters, and nothing whose key is not below it can be earlier. The step
     /// is a power of two, so the quotient is exact.
-    pub(crate) fn find(&mut self, offset: f64, triangles: [u32; 2], crossing: bool) {
-        self.limit_offset = offset;
-        self.limit = ((offset / self.step).ceil() as u32).min(self.limit);
-        self.found = Some(Found { start: self.motion.start, offset, triangles, crossing });
+    pub(crate) fn find(&mut self, found: Found) {
+        self.limit_offset = found.offset;
+        self.limit = ((found.offset / self.step).ceil() as u32).min(self.limit);
+        self.found = Some(found);
     }
 
     /// Nothing matters any more.

@@ -4,7 +4,7 @@ use super::scratch::Scratch;
 use super::state::{Outcome, Search};
 use crate::pair::boxes::entry_time::entry_times;
 use crate::pair::boxes::node_scale::NodeScale;
-use crate::pair::boxes::node_test::{NodeFrame, Placed};
+use crate::pair::boxes::node_test::{Expanded, NodeFrame, Placed};
 use crate::pair::scene::MovingScene;
 use crate::pair::triangles::pair_scale::PairScale;
 use crate::pair::triangles::separating_axis::{
@@ -17,6 +17,8 @@ use d2m_mesh::node::{NodeBox, WIDTH};
 use d2m_motion::ConstantTwist;
 use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
+
+const EXPANDED: [Expanded; 2] = [Expanded::A, Expanded::B];
 
 /// Eight triangles of very different size and shape around the origin.
 fn soup(random: &mut KnuthRandom) -> MeshTree {
@@ -57,7 +59,7 @@ fn least_ratio(rounds: u32, mutate: impl Fn(&mut NodeScale)) -> f64 {
         for (side, scale) in scales.iter_mut().enumerate() {
             mutate(scale);
             let (wide, single) = if side == 0 { (&a, &b) } else { (&b, &a) };
-            let node_frame = NodeFrame::new::<F64x4>(&frame, scale, side == 1, left);
+            let node_frame = NodeFrame::new::<F64x4>(&frame, scale, EXPANDED[side], left);
             // Each triangle's box, and the one around all.
             for index in (0..8).map(|lane| WIDTH + lane).chain([0]) {
                 let single_box = NodeBox::new(single.nodes(), index as u32);
@@ -117,7 +119,7 @@ fn room_at_the_end(triangle: [DVec3; 3], wall: f64, expanded: usize, mutate: imp
     let motion = scene.relative_motion(0.0);
     let mut scale = scene.node_scales(0.5)[expanded];
     mutate(&mut scale);
-    let frame = NodeFrame::new::<F64x4>(&motion.frame::<F64x4>(0.0), &scale, expanded == 1, 0.6);
+    let frame = NodeFrame::new::<F64x4>(&motion.frame::<F64x4>(0.0), &scale, EXPANDED[expanded], 0.6);
     let (wide, single) = if expanded == 1 { (&b, &a) } else { (&a, &b) };
     let placed = Placed::new::<Portable>(&frame, &scale, NodeBox::new(single.nodes(), 0), &wide.nodes()[0]);
     let time = entry_times::<Portable>(&wide.nodes()[0], &placed, &scale).store()[0];
@@ -254,7 +256,7 @@ fn boxes_called_apart_at_rest_are_apart() {
             let scene = MovingScene::new((&a, rest), (&b, rest), Window::UNIT, &options);
             let mut scale = scene.node_scales(1.0)[1];
             let motion = scene.relative_motion(0.0);
-            let frame = NodeFrame::new::<F64x4>(&motion.frame::<F64x4>(0.0), &scale, true, 1.0);
+            let frame = NodeFrame::new::<F64x4>(&motion.frame::<F64x4>(0.0), &scale, Expanded::B, 1.0);
             let full = Placed::new::<Portable>(&frame, &scale, NodeBox::new(a.nodes(), 0), &b.nodes()[0]);
             // What is left of the margin.
             scale.floor -= (1.0 - margin) * full.boxed.margin;
@@ -287,7 +289,7 @@ fn lines_of_no_length_or_beyond_all_numbers_part_nothing() {
             let frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
             for (side, scale) in scene.node_scales(1.0).iter().enumerate() {
                 let (wide, single) = if side == 0 { (&a, &b) } else { (&b, &a) };
-                let node_frame = NodeFrame::new::<F64x4>(&frame, scale, side == 1, 1.0);
+                let node_frame = NodeFrame::new::<F64x4>(&frame, scale, EXPANDED[side], 1.0);
                 let placed = Placed::new::<Portable>(
                     &node_frame,
                     scale,
@@ -320,7 +322,7 @@ fn speeds_beyond_all_numbers_prove_nothing() {
                 let scene = MovingScene::new((&small, rest), (&large, motion), Window::UNIT, &options);
                 let frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
                 let scale = &scene.node_scales(1.0)[0];
-                let node_frame = NodeFrame::new::<F64x4>(&frame, scale, false, 1.0);
+                let node_frame = NodeFrame::new::<F64x4>(&frame, scale, Expanded::A, 1.0);
                 let single = NodeBox::new(large.nodes(), 0);
                 let placed = Placed::new::<Portable>(&node_frame, scale, single, &small.nodes()[0]);
                 let time = entry_times::<Portable>(&small.nodes()[0], &placed, scale).store()[0];

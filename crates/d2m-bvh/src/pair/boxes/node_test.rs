@@ -35,6 +35,13 @@ pub(crate) struct NodeFrame {
     pub(crate) parting: Option<[f32; 3]>,
 }
 
+/// The body whose nodes are expanded against boxes of the other one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Expanded {
+    A,
+    B,
+}
+
 impl NodeFrame {
     /// What is there before the first one.
     pub(crate) const NONE: Self = Self {
@@ -50,29 +57,30 @@ impl NodeFrame {
         parting: None,
     };
 
-    /// `left`: no later time matters, counted from the frame (a hint). `wide_is_b`: nodes of B are expanded against boxes of A; else the other way round.
+    /// `left`: no later time matters, counted from the frame (a hint).
     #[inline(always)]
-    pub(crate) fn new<D: Doubles>(frame: &Frame, scale: &NodeScale, wide_is_b: bool, left: f32) -> Self {
+    pub(crate) fn new<D: Doubles>(frame: &Frame, scale: &NodeScale, expanded: Expanded, left: f32) -> Self {
         let (length, speed, time) =
             (D::splat(scale.inverse_unit), D::splat(scale.speed_scale), D::splat(scale.time_unit));
-        let (rotation, apart, velocity, omega_single, omega_wide): (Matrix, D, D, D, D) = if wide_is_b {
-            (
+        let (rotation, apart, velocity, omega_single, omega_wide): (Matrix, D, D, D, D) = match expanded {
+            Expanded::B => (
                 frame.rotation,
                 D::load(&frame.apart),
                 D::load(&frame.velocity),
                 D::load(&frame.omega_a),
                 D::load(&frame.omega_b),
-            )
-        } else {
-            let to_a = frame.rotation.transposed::<D>();
-            let zero = D::splat(0.0);
-            (
-                to_a,
-                zero - to_a.times_quad::<D>(&frame.apart),
-                zero - to_a.times_quad::<D>(&frame.velocity),
-                to_a.times_quad(&frame.omega_b),
-                to_a.times_quad(&frame.omega_a),
-            )
+            ),
+            Expanded::A => {
+                let to_a = frame.rotation.transposed::<D>();
+                let zero = D::splat(0.0);
+                (
+                    to_a,
+                    zero - to_a.times_quad::<D>(&frame.apart),
+                    zero - to_a.times_quad::<D>(&frame.velocity),
+                    to_a.times_quad(&frame.omega_b),
+                    to_a.times_quad(&frame.omega_a),
+                )
+            }
         };
         let (omega_single, omega_wide) = (omega_single * time, omega_wide * time);
         let r = &rotation.0;

@@ -213,12 +213,16 @@ mod tests {
     use d2m_testing::{Draw, KnuthRandom, Surface};
     use glam::DQuat;
 
-    fn joint(random: &mut KnuthRandom, turns: bool) -> Joint {
+    /// A joint of a random axis that turns, or slides if its number is that of the one that does.
+    fn joint(random: &mut KnuthRandom, number: usize, sliding: usize) -> Joint {
         let value =
             JointValue::try_polynomial((0..4).map(|_| 2.0 * random.signed()).collect::<Vec<_>>()).unwrap();
         let axis = random.vector();
-        let kind =
-            if turns { JointKind::Revolute { axis, value } } else { JointKind::Prismatic { axis, value } };
+        let kind = if number == sliding {
+            JointKind::Prismatic { axis, value }
+        } else {
+            JointKind::Revolute { axis, value }
+        };
         Joint::try_new(random.vector(), DQuat::IDENTITY, kind).unwrap()
     }
 
@@ -228,7 +232,7 @@ mod tests {
         let mut random = KnuthRandom(17);
         let tree = MeshTree::new(Surface::cube(0.5).map(|p| p + DVec3::X).into_mesh(TriMesh::try_new));
         for round in 0..200 {
-            let joints = (0..3).map(|k| joint(&mut random, k != round % 3)).collect();
+            let joints = (0..3).map(|k| joint(&mut random, k, round % 3)).collect();
             let motion = Chain::try_new(joints).unwrap();
             let body = Moving::new(&tree, &motion);
             let (n, middle) = (random.vector(), random.signed());
