@@ -269,7 +269,7 @@ mod tests {
             });
             for corners in &places {
                 let corners = corners.map(ProjectedVertex::new);
-                let near = AnnularBound::of(&corners.map(|p| p.at), true).near;
+                let near = AnnularBound::of(&corners.map(|p| p.at)).near;
                 let piece = Piece::of(corners, near, screw.h);
                 orbits.add(piece, corners.map(|p| angle(p.at.y, p.at.x)));
             }

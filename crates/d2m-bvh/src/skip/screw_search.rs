@@ -102,7 +102,7 @@ impl Seen {
         let vertices = PlacedVertices::new(mesh.vertices().iter().map(|&p| place(body.place(p))));
         let annulus = |triangle: &[u32; 3]| {
             clock.step()?;
-            Ok(AnnularBound::of(&vertices.corners(*triangle), true))
+            Ok(AnnularBound::of(&vertices.corners(*triangle)))
         };
         let annuli = mesh.triangles().iter().map(annulus).collect::<Result<Vec<_>, _>>()?;
         Ok(Self { vertices, annuli })
@@ -139,7 +139,7 @@ fn clear_along(
     let places = screw.places(scene, start);
     let probe = [0, 1].map(|body| {
         let corners = bodies[body].corners(limits.witnesses[body]).map(&places[body]);
-        let near = AnnularBound::of(&corners, true).near;
+        let near = AnnularBound::of(&corners).near;
         let triangle = SeenTriangle { vertices: [0, 1, 2], near };
         let mut vertices = PlacedVertices::new(corners.into_iter());
         BodyProjections::try_new(screw, &mut vertices, &[triangle], &mut walk.clock)

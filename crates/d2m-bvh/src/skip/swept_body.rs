@@ -35,15 +35,18 @@ impl AnnularBound {
         }
     }
 
-    /// Of a triangle, corners from a point of the axis, which is the third coordinate. The least distance from the axis
-    /// counts for bodies that spin only.
-    pub(super) fn of(corners: &[DVec3; 3], spins: bool) -> Self {
-        let [low, high] = [f64::min, f64::max].map(|f| f(f(corners[0].z, corners[1].z), corners[2].z));
+    /// Of a triangle, corners from a point of the axis, which is the third coordinate.
+    pub(super) fn of(corners: &[DVec3; 3]) -> Self {
         let flat = corners.map(DVec3::truncate);
-        let squares = flat.map(DVec2::length_squared);
-        let far = squares[0].max(squares[1]).max(squares[2]).sqrt();
-        let near = if spins { distance_squared_in_plane(&flat, &squares).sqrt() } else { 0.0 };
-        Self { low, high, near, far }
+        let near = distance_squared_in_plane(&flat, &flat.map(DVec2::length_squared)).sqrt();
+        Self { near, ..Self::filled(corners) }
+    }
+
+    /// The same without the least distance from the axis.
+    fn filled(corners: &[DVec3; 3]) -> Self {
+        let [low, high] = [f64::min, f64::max].map(|f| f(f(corners[0].z, corners[1].z), corners[2].z));
+        let squares = corners.map(|corner| corner.truncate().length_squared());
+        Self { low, high, near: 0.0, far: squares[0].max(squares[1]).max(squares[2]).sqrt() }
     }
 }
 
@@ -63,7 +66,14 @@ pub(super) struct SweptBody<'a> {
 }
 
 impl<'a> SweptBody<'a> {
-    pub(super) fn new(body: &'a SceneBody<'a>, spins: bool, start: f64, direction: DVec3) -> Self {
+    /// A body that turns about its own axis.
+    pub(super) fn spinning(body: &'a SceneBody<'a>, start: f64) -> Self {
+        let axis = body.motion.turning().axis();
+        Self { spins: true, turning: DVec3::ZERO, ..Self::resting(body, start, axis) }
+    }
+
+    /// A body that hardly turns.
+    pub(super) fn resting(body: &'a SceneBody<'a>, start: f64, axis: DVec3) -> Self {
         let motion = &body.motion;
         let rotation = motion.rotation(start);
         let turn = |p: DVec3| rotation[0] * p.x + rotation[1] * p.y + rotation[2] * p.z;
@@ -71,11 +81,16 @@ impl<'a> SweptBody<'a> {
             body,
             rotation,
             arm: turn(motion.arm()),
-            axis: if spins { motion.turning().axis() } else { direction },
-            spins,
-            turning: if spins { DVec3::ZERO } else { motion.angular_velocity() },
+            axis,
+            spins: false,
+            turning: motion.angular_velocity(),
             annuli: Vec::new(),
         }
+    }
+
+    /// Of a triangle in coordinates of the axis. The least distance from it counts for bodies that spin only.
+    fn annulus(&self, corners: &[DVec3; 3]) -> AnnularBound {
+        if self.spins { AnnularBound::of(corners) } else { AnnularBound::filled(corners) }
     }
 
     fn turn(&self, p: DVec3) -> DVec3 {
@@ -120,7 +135,7 @@ impl<'a> SweptBody<'a> {
             let annulus = match tree.nodes()[node].below(lane) {
                 Below::Triangle(triangle) => {
                     let corners = tree.mesh().triangles()[triangle as usize];
-                    AnnularBound::of(&corners.map(|vertex| places[vertex as usize]), self.spins)
+                    self.annulus(&corners.map(|vertex| places[vertex as usize]))
                 }
                 Below::Node(below) => self.measure_node(below as usize, places, clock)?,
             };
@@ -136,7 +151,7 @@ impl<'a> SweptBody<'a> {
         let center = (corners[0] + corners[1] + corners[2]) / 3.0;
         SweptPart {
             body: self,
-            annulus: AnnularBound::of(&corners.map(self.to_axis_coordinates()), self.spins),
+            annulus: self.annulus(&corners.map(self.to_axis_coordinates())),
             center,
             axes: [DVec3::ZERO; 3],
             half: [0.0; 3],
@@ -165,7 +180,7 @@ impl<'a> SweptBody<'a> {
         let radius = f64::from(boxed.radius) * unit;
         let annulus = match (self.annuli.get(index as usize), &corners) {
             (Some(annulus), _) => *annulus,
-            (None, Some(corners)) => AnnularBound::of(&corners.map(self.to_axis_coordinates()), self.spins),
+            (None, Some(corners)) => self.annulus(&corners.map(self.to_axis_coordinates())),
             (None, None) => {
                 let [height, extent] = [
                     self.axis.dot(center),

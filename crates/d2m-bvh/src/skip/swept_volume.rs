@@ -105,8 +105,9 @@ impl<'a> Sweep<'a> {
         let end = scene.end;
         let spins = [&scene.a, &scene.b].map(|body| body.turns_by(end - start) > STILL_ANGLE);
         let direction = if spins[0] || spins[1] { scene.spin_axis().unwrap_or(direction) } else { direction };
-        let bodies = [(&scene.a, spins[0]), (&scene.b, spins[1])]
-            .map(|(body, spins)| SweptBody::new(body, spins, start, direction));
+        let bodies = [(&scene.a, spins[0]), (&scene.b, spins[1])].map(|(body, spins)| {
+            if spins { SweptBody::spinning(body, start) } else { SweptBody::resting(body, start, direction) }
+        });
         Self {
             bodies,
             apart: -scene.track.at(start),

@@ -128,7 +128,7 @@ fn of_two_pieces_the_one_whose_bend_counts_is_divided() {
     let screw = Screw::new(&scene, 0.0).unwrap();
     let mut clock = Meter::until(Stop::NEVER);
     let [spoke, short, chord] = [spoke, short, chord].map(|corners| {
-        let triangle = SeenTriangle { vertices: [0, 1, 2], near: AnnularBound::of(&corners, true).near };
+        let triangle = SeenTriangle { vertices: [0, 1, 2], near: AnnularBound::of(&corners).near };
         let mut vertices = PlacedVertices::new(corners.into_iter());
         BodyProjections::try_new(&screw, &mut vertices, &[triangle], &mut clock).unwrap().with_angles
     });
