@@ -122,8 +122,8 @@ impl Pair {
         let [a, b] = [a, b].map(|body| Body::new(body, arguments.mode));
         let preparation = start.elapsed();
         let solids = [
-            choose_solid([(&a.name, a.is_watertight())], arguments.solid)?,
-            choose_solid([(&b.name, b.is_watertight())], arguments.solid)?,
+            choose_solid(&a.name, a.is_watertight(), arguments.solid)?,
+            choose_solid(&b.name, b.is_watertight(), arguments.solid)?,
         ];
         let [size_a, size_b] = sizes_of([&a, &b], radii);
         warn_of_sizes(size_a, size_b);
@@ -384,22 +384,20 @@ pub(crate) fn read_radii(sizes: &SizeArguments) -> Result<[f64; 2], Failure> {
     Ok([one("--radius-a", &sizes.radius_a)?, one("--radius-b", &sizes.radius_b)?])
 }
 
-/// Filled if the bodies (name, and whether it is watertight) all close, unless the user says otherwise.
-pub(crate) fn choose_solid<const N: usize>(
-    bodies: [(&str, bool); N],
+/// Filled if the body is watertight, unless the user says otherwise.
+pub(crate) fn choose_solid(
+    name: &str,
+    is_watertight: bool,
     arguments: SolidArguments,
 ) -> Result<Solid, Failure> {
-    if arguments.surface {
-        return Ok(Solid::Surface);
-    }
-    match bodies.into_iter().find(|(_, is_watertight)| !is_watertight) {
-        None => Ok(Solid::Filled),
-        Some((name, _)) if arguments.solid => {
+    match (arguments.surface, is_watertight) {
+        (true, _) => Ok(Solid::Surface),
+        (false, true) => Ok(Solid::Filled),
+        (false, false) if arguments.solid => {
             Err(Failure::at(name, "the mesh is not watertight, so it bounds no solid: use --surface"))
         }
-        Some((name, _)) => {
-            let counts = if N > 1 { "only surfaces count" } else { "only its surface counts" };
-            note(&format!("d2m: note: {name} is not watertight: {counts}"));
+        (false, false) => {
+            note(&format!("d2m: note: {name} is not watertight: only its surface counts"));
             Ok(Solid::Surface)
         }
     }

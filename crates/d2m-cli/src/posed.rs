@@ -67,10 +67,11 @@ impl PosedBodies {
         [0, 1].map(|k| size_of(self.both[k].tree.mesh()) + 2.0 * self.radii[k])
     }
 
-    /// What counts as a body.
-    pub(crate) fn solid(&self, arguments: SolidArguments) -> Result<Solid, Failure> {
-        let bodies = self.both.each_ref().map(|body| (body.name.as_str(), body.tree.is_watertight()));
-        choose_solid(bodies, arguments)
+    /// What counts as a body, of each.
+    pub(crate) fn solids(&self, arguments: SolidArguments) -> Result<[Solid; 2], Failure> {
+        let [a, b] =
+            self.both.each_ref().map(|body| choose_solid(&body.name, body.tree.is_watertight(), arguments));
+        Ok([a?, b?])
     }
 
     /// An error of a query, with the option that it comes from.

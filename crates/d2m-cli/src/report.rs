@@ -36,6 +36,16 @@ fn count(number: usize) -> String {
     groups.join(" ")
 }
 
+/// What counts as a body, for a person.
+pub(crate) const fn solids_words(solids: [Solid; 2]) -> &'static str {
+    match solids {
+        [Solid::Filled, Solid::Filled] => "filled solids",
+        [Solid::Surface, Solid::Surface] => "surfaces only",
+        [Solid::Filled, Solid::Surface] => "filled solid A, surface of B",
+        [Solid::Surface, Solid::Filled] => "surface of A, filled solid B",
+    }
+}
+
 /// The answer for a person.
 pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
     let further = &answer.further;
@@ -57,12 +67,7 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
         line("start", format!("{}; {left}", start_word(departure.start)));
     }
     body_lines(&mut line, pair);
-    let solid = match pair.solids {
-        [Solid::Filled, Solid::Filled] => "filled solids",
-        [Solid::Surface, Solid::Surface] => "surfaces only",
-        [Solid::Filled, Solid::Surface] => "filled solid A, surface of B",
-        [Solid::Surface, Solid::Filled] => "surface of A, filled solid B",
-    };
+    let solid = solids_words(pair.solids);
     let nearer = match pair.min_separation {
         0.0 => String::new(),
         distance => format!(" · a distance of {} is contact", short(distance)),

@@ -55,6 +55,29 @@ fn distances_come_with_witnesses_and_an_interval() {
     assert_eq!((&value["status"], &value["state"]), (&"contact".into(), &"overlapping".into()));
 }
 
+/// A sheet is in the solid that holds it for every command, whichever of them comes first; a mesh that is open holds nothing.
+#[test]
+fn a_sheet_in_a_solid_is_in_it() {
+    let folder = Folder::new("sheet-in-solid");
+    let sheet = folder.file("sheet.obj", "v 0 0 0\nv 0.3 0 0\nv 0 0.3 0\nf 1 2 3\n");
+    let lid = folder.file("open.obj", "v -9 -9 1\nv 9 -9 1\nv 0 9 1\nv 0 0 -9\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    for (holder, is_held) in [(UNIT_BOX, true), (&lid, false)] {
+        for pair in [[holder, &sheet], [&sheet, holder]] {
+            for command in ["toc", "distance", "collide"] {
+                let value = json(&[command, pair[0], pair[1], "--json"]);
+                assert_eq!(value["status"] == "contact", is_held, "{command} {pair:?}: {value}");
+                assert_eq!(value["solids"], serde_json::json!(pair.map(|name| name == UNIT_BOX)), "{value}");
+            }
+            let distance = json(&["distance", pair[0], pair[1], "--json"]);
+            assert_eq!(number(&distance["lower"]) == 0.0, is_held, "{distance}");
+            let surfaces = json(&["collide", pair[0], pair[1], "--surface", "--json"]);
+            assert_eq!(surfaces["status"], "separated", "{surfaces}");
+        }
+    }
+    let text = stdout(&d2m(&["collide", &sheet, UNIT_BOX]));
+    assert!(text.contains("surface of A, filled solid B"), "{text}");
+}
+
 #[test]
 fn collide_names_triangles_or_containment() {
     let value = json(&["collide", UNIT_BOX, UNIT_BOX, "--pose-a", "x=0.5,0.1,0.2", "--json"]);

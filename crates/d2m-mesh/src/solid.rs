@@ -29,3 +29,26 @@ pub enum Solid {
     /// Only the surfaces count: open meshes, polygon soup, hollow shells.
     Surface,
 }
+
+/// The same meaning of both bodies.
+///
+/// ```
+/// # use d2m_mesh::{MeshTree, TriMesh};
+/// # use glam::DVec3;
+/// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces)?);
+/// use d2m_mesh::{Posed, Solid, collide};
+/// // One triangle inside of a solid, which has it, whatever it is itself.
+/// let inside = vertices[1..].iter().map(|p| *p * 0.1 + 0.1).collect();
+/// let sheet = MeshTree::new(TriMesh::try_new(inside, vec![[0, 1, 2]])?);
+/// let [solid, sheet] = [Posed::at_rest(&tree), Posed::at_rest(&sheet)];
+/// assert!(collide(solid, sheet, [Solid::Filled, Solid::Surface])?);
+/// assert!(!collide(solid, sheet, Solid::Surface)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+impl From<Solid> for [Solid; 2] {
+    fn from(solid: Solid) -> Self {
+        [solid; 2]
+    }
+}

@@ -4,8 +4,8 @@ mod exact;
 
 use d2m_feature::triangle_distance;
 use d2m_mesh::{
-    DistanceOptions, MeshTree, Posed, QueryError, Solid, StartState, TriMesh, collide, colliding_pairs,
-    distance, distance_within, try_colliding_pair,
+    Budget, DistanceOptions, MeshTree, Posed, QueryError, Solid, StartState, TriMesh, bound_distance,
+    collide, collide_within, colliding_pairs, distance, distance_within, try_colliding_pair,
 };
 use d2m_motion::Pose;
 use d2m_testing::{Draw, KnuthRandom, Surface};
@@ -231,6 +231,14 @@ fn one_inside_the_other() {
                 distance_within(a, b, &options).unwrap().unwrap()
             };
             assert_eq!(as_these([Solid::Filled, Solid::Surface]), distance(a, b, Solid::Filled).unwrap());
+            for (solids, is_held) in
+                [([Solid::Filled, Solid::Surface], true), ([Solid::Surface, Solid::Filled], false)]
+            {
+                assert_eq!(collide(a, b, solids).unwrap(), is_held);
+                let within = collide_within(a, b, solids, &Budget::UNLIMITED).unwrap();
+                let bounds = bound_distance(a, b, solids, &Budget::UNLIMITED).unwrap();
+                assert_eq!((within, bounds.lower == 0.0), (Some(is_held), is_held));
+            }
             let around = as_these([Solid::Surface, Solid::Filled]);
             assert_eq!(around, distance(a, b, Solid::Surface).unwrap());
             assert!(around.state == StartState::Apart && around.lower > 0.0, "{around:?}");

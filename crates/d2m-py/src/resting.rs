@@ -33,14 +33,9 @@ impl PosedPair {
         [0, 1].map(|body| Posed::new(&self.trees[body], self.poses[body]))
     }
 
-    /// Static queries take one meaning for both bodies: solid if both are.
-    fn solid(&self, any: Option<&Bound<'_, PyAny>>) -> PyResult<Solid> {
-        let [a, b] = solids(any, [&self.trees[0], &self.trees[1]])?;
-        match (any, a, b) {
-            (_, Solid::Filled, Solid::Filled) => Ok(Solid::Filled),
-            (None, ..) | (_, Solid::Surface, Solid::Surface) => Ok(Solid::Surface),
-            _ => Err(Fault::new("solid: bodies at rest are both solids or both surfaces").into()),
-        }
+    /// What each body is.
+    fn solids(&self, any: Option<&Bound<'_, PyAny>>) -> PyResult<[Solid; 2]> {
+        solids(any, [&self.trees[0], &self.trees[1]])
     }
 }
 
@@ -105,8 +100,7 @@ impl Distance {
 
 /// The distance of two bodies at rest, with proven bounds and witnesses.
 ///
-/// Poses are those of `Pose`, matrices of shape (4, 4), seven numbers (q, x), or `None`; `solid` as of `time_of_contact`, both the
-/// same. With a `cutoff`, `None` is a proof that the distance is more than that.
+/// Poses are those of `Pose`, matrices of shape (4, 4), seven numbers (q, x), or `None`; `solid` as of `time_of_contact`. With a `cutoff`, `None` is a proof that the distance is more than that.
 ///
 /// Raises `InputError` for poses that are none, a filled solid that does not close, a negative cutoff.
 ///
@@ -128,7 +122,7 @@ pub(crate) fn distance(
     cutoff: Option<f64>,
 ) -> PyResult<Option<Py<Distance>>> {
     let pair = PosedPair::new([a, b], [pose_a, pose_b])?;
-    let mut options = DistanceOptions::default().with_solid(pair.solid(solid)?);
+    let mut options = DistanceOptions::default().with_solids(pair.solids(solid)?);
     if let Some(cutoff) = cutoff {
         options = options.with_cutoff(cutoff);
     }
@@ -162,10 +156,10 @@ pub(crate) fn collide(
     time_limit: Option<f64>,
 ) -> PyResult<Option<bool>> {
     let pair = PosedPair::new([a, b], [pose_a, pose_b])?;
-    let solid = pair.solid(solid)?;
+    let solids = pair.solids(solid)?;
     let budget = budget(node_tests, time_limit).or_raise()?;
     let [a, b] = pair.posed();
-    py.detach(|| collide_within(a, b, solid, &budget)).or_raise()
+    py.detach(|| collide_within(a, b, solids, &budget)).or_raise()
 }
 
 /// Every locally closest pair of features of two bodies at rest within `margin`: the contact manifold.

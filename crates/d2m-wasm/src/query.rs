@@ -184,11 +184,11 @@ pub(crate) fn distance([a, b]: [Given<'_>; 2], options: &str) -> Result<Value, S
     options.refuse_all_but_solid("distance")?;
     let poses = [read_pose("pose of A", a.motion)?, read_pose("pose of B", b.motion)?];
     let solids = [options.solid("A", a.tree)?, options.solid("B", b.tree)?];
-    let solid = if solids == [Solid::Filled; 2] { Solid::Filled } else { Solid::Surface };
     let (found, microseconds) =
-        timed(|| bvh::distance(Posed::new(a.tree, poses[0]), Posed::new(b.tree, poses[1]), solid));
+        timed(|| bvh::distance(Posed::new(a.tree, poses[0]), Posed::new(b.tree, poses[1]), solids));
     let mut answer = distance_fields(&found.map_err(|error| error.to_string())?);
-    answer["solid"] = json!(solid == Solid::Filled);
+    answer["solid"] = json!(solids == [Solid::Filled; 2]);
+    answer["solids"] = json!(solids.map(|solid| solid == Solid::Filled));
     answer["triangles"] = json!([a.tree.mesh().triangle_count(), b.tree.mesh().triangle_count()]);
     answer["microseconds"] = json!(microseconds);
     Ok(answer)

@@ -1,7 +1,7 @@
 //! The nearest pair of a world, the pairs below a limit and the spans of all, against each pair by itself.
 
 use d2m_bvh::{
-    ClearanceOptions, ContactSpan, MeshTree, QueryOptions, SpanStatus, TriMesh, Window, clearance,
+    ClearanceOptions, ContactSpan, MeshTree, QueryOptions, Solid, SpanStatus, TriMesh, Window, clearance,
     contact_spans,
 };
 use d2m_motion::{ConstantTwist, Keyframes, Pose, Span};
@@ -123,6 +123,28 @@ fn spans_are_clear_where_all_pairs_are() {
         contact += joined.iter().filter(|span| span.status == SpanStatus::Contact).count();
     }
     assert!(clear > 5 && contact > 5, "{clear} {contact}");
+}
+
+/// What a body is that does not say so, the options of the world say, also for clearances, whatever those are asked with.
+#[test]
+fn clearances_take_bodies_for_what_the_world_takes_them_for() {
+    let tree = |half: f64| {
+        Arc::new(MeshTree::new(d2m_shapes::mesh(&format!("box?x={half}&y={half}&z={half}")).unwrap()))
+    };
+    for (solid, is_met) in [(Solid::Filled, true), (Solid::Surface, false)] {
+        let mut world = World::new(QueryOptions::default().with_solid(solid));
+        for half in [1.0, 0.25] {
+            world.add(Body::new(tree(half), ConstantTwist::REST));
+        }
+        assert_eq!(world.contacts(Window::UNIT).unwrap().len() == 1, is_met);
+        for asked in [Solid::Filled, Solid::Surface] {
+            let options = ClearanceOptions::default().with_solid(asked);
+            let nearest = world.nearest_pair(Window::UNIT, &options).unwrap().unwrap();
+            assert_eq!(nearest.clearance.lower == 0.0, is_met, "{nearest:?}");
+            let below = world.clearances_below(0.5, Window::UNIT, &options).unwrap();
+            assert_eq!(below.len() == 1, is_met);
+        }
+    }
 }
 
 #[test]

@@ -1,12 +1,11 @@
 //! `d2m collide`: do two bodies at rest share a point?
 
-use super::distance::solid_word;
 use crate::arguments::CollideArguments;
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::print_answer;
 use crate::posed::PosedBodies;
-use crate::report::{duration, microseconds, start_in_json, start_word, vector};
+use crate::report::{duration, microseconds, solids_words, start_in_json, start_word, vector};
 use d2m::bvh::{Solid, StartState, collide, distance, try_colliding_pair};
 use serde_json::json;
 use std::fmt::Write;
@@ -15,16 +14,16 @@ use std::time::Instant;
 /// Runs the command.
 pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
     let bodies = PosedBodies::new(&arguments.posed)?;
-    let solid = bodies.solid(arguments.solid)?;
+    let solids = bodies.solids(arguments.solid)?;
     let [a, b] = &bodies.both;
     let start = Instant::now();
     let rounded = bodies.radii != [0.0; 2];
-    let is_near = rounded || collide(a.posed(), b.posed(), solid).map_err(|error| bodies.failure(error))?;
+    let is_near = rounded || collide(a.posed(), b.posed(), solids).map_err(|error| bodies.failure(error))?;
     let took = start.elapsed();
     // How bodies that are not apart meet: decided by the distance, which finds the normal of those that touch. It decides everything of
     // bodies with radii.
     let met = if is_near {
-        let found = distance(a.posed(), b.posed(), solid).map_err(|error| bodies.failure(error))?;
+        let found = distance(a.posed(), b.posed(), solids).map_err(|error| bodies.failure(error))?;
         Some(found.with_radii(bodies.radii)).filter(|met| !rounded || met.state != StartState::Apart)
     } else {
         None
@@ -48,7 +47,8 @@ pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
             "triangle_a": triangles.map(|[a, _]| a),
             "triangle_b": triangles.map(|[_, b]| b),
             "contained": is_contact && triangles.is_none(),
-            "solid": solid == Solid::Filled,
+            "solid": solids == [Solid::Filled; 2],
+            "solids": solids.map(|solid| solid == Solid::Filled),
             "triangles": bodies.both.each_ref().map(|body| body.tree.mesh().triangle_count()),
             "microseconds": microseconds(took),
         });
@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &CollideArguments) -> Result<Outcome, Failure> {
             line("normal", format!("{} from A to B", vector(normal)));
         }
         bodies.lines(&mut line);
-        line("query", solid_word(solid).to_owned());
+        line("query", solids_words(solids).to_owned());
         line("took", duration(took));
         text + &bodies.sizes_line()
     })?;

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::{print_answer, short};
 use crate::posed::PosedBodies;
-use crate::report::{duration, microseconds, start_word, vector};
+use crate::report::{duration, microseconds, solids_words, start_word, vector};
 use d2m::bvh::{Distance, Solid, StartState, distance};
 use d2m_io::distance_fields;
 use serde_json::json;
@@ -15,22 +15,22 @@ use std::time::{Duration, Instant};
 /// Runs the command.
 pub(crate) fn run(arguments: &DistanceArguments) -> Result<Outcome, Failure> {
     let bodies = PosedBodies::new(&arguments.posed)?;
-    let solid = bodies.solid(arguments.solid)?;
+    let solids = bodies.solids(arguments.solid)?;
     let [a, b] = &bodies.both;
     let start = Instant::now();
-    let found = distance(a.posed(), b.posed(), solid);
+    let found = distance(a.posed(), b.posed(), solids);
     let took = start.elapsed();
     let found = found.map_err(|error| bodies.failure(error))?.with_radii(bodies.radii);
     print_answer(&if arguments.posed.json {
-        to_json(&bodies, solid, &found, took)
+        to_json(&bodies, solids, &found, took)
     } else {
-        to_text(&bodies, solid, &found, took)
+        to_text(&bodies, solids, &found, took)
     })?;
     let outcome = if found.state == StartState::Apart { Outcome::Separated } else { Outcome::Contact };
     Ok(outcome.reported(arguments.posed.exit_status))
 }
 
-fn to_text(bodies: &PosedBodies, solid: Solid, found: &Distance, took: Duration) -> String {
+fn to_text(bodies: &PosedBodies, solids: [Solid; 2], found: &Distance, took: Duration) -> String {
     let mut text = match found.state {
         StartState::Apart => format!("DISTANCE {}\n", short(found.value)),
         state => format!("DISTANCE 0: {}\n", start_word(state)),
@@ -46,22 +46,15 @@ fn to_text(bodies: &PosedBodies, solid: Solid, found: &Distance, took: Duration)
         line("normal", format!("{} from A to B", vector(found.normal)));
     }
     bodies.lines(&mut line);
-    line("query", solid_word(solid).to_owned());
+    line("query", solids_words(solids).to_owned());
     line("took", duration(took));
     text + &bodies.sizes_line()
 }
 
-/// What counts as a body, for a person.
-pub(super) fn solid_word(solid: Solid) -> &'static str {
-    match solid {
-        Solid::Filled => "filled solids",
-        Solid::Surface => "surfaces only",
-    }
-}
-
-fn to_json(bodies: &PosedBodies, solid: Solid, found: &Distance, took: Duration) -> String {
+fn to_json(bodies: &PosedBodies, solids: [Solid; 2], found: &Distance, took: Duration) -> String {
     let mut object = distance_fields(found);
-    object["solid"] = json!(solid == Solid::Filled);
+    object["solid"] = json!(solids == [Solid::Filled; 2]);
+    object["solids"] = json!(solids.map(|solid| solid == Solid::Filled));
     object["triangles"] = json!(bodies.both.each_ref().map(|body| body.tree.mesh().triangle_count()));
     object["microseconds"] = json!(microseconds(took));
     format!("{object}\n")

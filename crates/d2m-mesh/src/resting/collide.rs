@@ -32,11 +32,12 @@ use glam::DVec3;
 /// # Errors
 /// [`QueryError::BadPose`], and [`QueryError::NotWatertight`] with [`Solid::Filled`].
 #[doc(alias = "intersects")]
-pub fn collide(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<bool, QueryError> {
-    check_solids(a, b, [solid; 2])?;
+pub fn collide(a: Posed<'_>, b: Posed<'_>, solids: impl Into<[Solid; 2]>) -> Result<bool, QueryError> {
+    let solids = solids.into();
+    check_solids(a, b, solids)?;
     let scene = RestingScene::try_new(a, b)?;
     // What a budget without limits leaves open is not proven apart.
-    Ok(may_collide(&scene, solid, &mut Meter::unlimited()).unwrap_or(true))
+    Ok(may_collide(&scene, solids, &mut Meter::unlimited()).unwrap_or(true))
 }
 
 /// As [`collide`] within a budget; `None`: it ran out, and nothing is known.
@@ -59,18 +60,18 @@ pub fn collide(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<bool, QueryEr
 pub fn collide_within(
     a: Posed<'_>,
     b: Posed<'_>,
-    solid: Solid,
+    solids: impl Into<[Solid; 2]>,
     budget: &Budget,
 ) -> Result<Option<bool>, QueryError> {
-    check_solids(a, b, [solid; 2])?;
+    let solids = solids.into();
+    check_solids(a, b, solids)?;
     let scene = RestingScene::try_new(a, b)?;
-    Ok(may_collide(&scene, solid, &mut Meter::new(budget)).ok())
+    Ok(may_collide(&scene, solids, &mut Meter::new(budget)).ok())
 }
 
-fn may_collide(scene: &RestingScene<'_>, solid: Solid, meter: &mut Meter) -> Result<bool, Exhausted> {
+fn may_collide(scene: &RestingScene<'_>, solids: [Solid; 2], meter: &mut Meter) -> Result<bool, Exhausted> {
     let found = search(scene, Wanted { most: 1, counts: may_touch }, meter)?;
-    Ok(!found.pairs.is_empty()
-        || !found.boxes_apart && one_holds_the_other(scene, [solid; 2], meter)?.is_some())
+    Ok(!found.pairs.is_empty() || !found.boxes_apart && one_holds_the_other(scene, solids, meter)?.is_some())
 }
 
 /// A pair of triangles, one of each body, that is not proven apart; `None` is a proof that the surfaces are disjoint.

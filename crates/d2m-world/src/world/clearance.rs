@@ -71,6 +71,8 @@ impl World {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
+    /// What a body counts as is said by it or by the options of the world; `solid` of these options has no part in it.
+    ///
     /// # Errors
     /// Bad input of a pair, with its names; a motion that does not cover the window.
     pub fn nearest_pair(
@@ -160,8 +162,11 @@ impl World {
     /// The bodies, whose motions have to cover the window, and the pairs that are not ignored.
     fn listed(&self, window: Window, counts: impl Fn(IndexPair) -> bool) -> Result<Listed<'_>, WorldError> {
         let all = (0..self.slots.places() as u32).filter_map(|place| Some((place, self.slots.at(place)?)));
-        let (places, bodies): (Vec<u32>, Vec<Moving<'_>>) =
-            all.map(|(place, body)| (place, body.moving())).unzip();
+        // What is not said of a body is said by the options of the world, not by those of a clearance.
+        let (places, bodies): (Vec<u32>, Vec<Moving<'_>>) = all
+            .map(|(place, body)| (place, body.moving()))
+            .map(|(place, moving)| (place, moving.with_solid(moving.solid_in(&self.options))))
+            .unzip();
         for (&place, body) in places.iter().zip(&bodies) {
             let covered = CoveredMotion::try_new(body.motion, window.start(), window.end());
             if let Err(outside) = covered {

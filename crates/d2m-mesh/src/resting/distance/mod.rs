@@ -146,8 +146,8 @@ impl DistanceOptions {
 ///
 /// # Errors
 /// [`QueryError::BadPose`], and [`QueryError::NotWatertight`] with [`Solid::Filled`].
-pub fn distance(a: Posed<'_>, b: Posed<'_>, solid: Solid) -> Result<Distance, QueryError> {
-    let options = DistanceOptions::default().with_solid(solid);
+pub fn distance(a: Posed<'_>, b: Posed<'_>, solids: impl Into<[Solid; 2]>) -> Result<Distance, QueryError> {
+    let options = DistanceOptions::default().with_solids(solids.into());
     let found = distance_within(a, b, &options)?;
     // Without a cutoff there is always a closest pair of triangles.
     found.ok_or(QueryError::BadPose { body: 0 })
@@ -303,10 +303,11 @@ pub struct DistanceBounds {
 pub fn bound_distance(
     a: Posed<'_>,
     b: Posed<'_>,
-    solid: Solid,
+    solids: impl Into<[Solid; 2]>,
     budget: &Budget,
 ) -> Result<DistanceBounds, QueryError> {
-    check_solids(a, b, [solid; 2])?;
+    let solids = solids.into();
+    check_solids(a, b, solids)?;
     let scene = RestingScene::try_new(a, b)?;
     let meter = &mut Meter::new(budget);
     // Some pair is compared before the budget counts, so there always is an upper bound.
@@ -314,9 +315,7 @@ pub fn bound_distance(
     let found = run(Search { scene: &scene, first, limit: f64::INFINITY, slack: 0.0, meter });
     let found = crossing(&scene, found, meter);
     let is_apart = match &found {
-        Found::Pair(best) | Found::Exhausted(best) if best.is_apart(&scene) => {
-            holds(&scene, [solid; 2], meter)
-        }
+        Found::Pair(best) | Found::Exhausted(best) if best.is_apart(&scene) => holds(&scene, solids, meter),
         _ => Ok(false),
     };
     let (best, is_complete) = match found {
@@ -325,7 +324,7 @@ pub fn bound_distance(
         // Without a limit there is always a closest pair of triangles.
         Found::Beyond | Found::Unclear => return Err(QueryError::BadPose { body: 0 }),
     };
-    let meeting = if best.is_apart(&scene) { None } else { Some(meeting(&[a, b], [solid; 2], meter)?) };
+    let meeting = if best.is_apart(&scene) { None } else { Some(meeting(&[a, b], solids, meter)?) };
     let state = match (&meeting, is_apart) {
         (Some(meeting), _) => meeting.state(),
         (None, Ok(true)) => StartState::Contained,
