@@ -208,7 +208,7 @@ mod tests {
     use super::*;
     use crate::Body;
     use crate::faces::Faces;
-    use crate::pairs::measure;
+    use crate::measured::measure;
     use d2m_bvh::MeshTree;
     use std::sync::Arc;
 
@@ -223,7 +223,7 @@ mod tests {
             [0.0, 1.001].map(|x| RigidBody::try_new(&at(x), Arc::clone(&faces), 0.0).unwrap()).into();
         let material = Material { restitution: 0.0, friction: 0.5 };
         let mut pair = Pair::new(1e-3);
-        pair.keep(measure(&bodies, (0, 1), 0.0, 2e-3, 1e-3, material).unwrap(), 0.0, 1e-3);
+        pair.keep(measure(&bodies, (0, 1), 0.0, 2e-3, 1e-3, material, &[]).unwrap(), 0.0, 1e-3);
         let poses = [0, 1].map(|k| bodies[k].pose_at(0.0));
         let found = distance_of([&bodies[0], &bodies[1]], poses, 1.0, &mut pair.cache).unwrap().unwrap();
         pair.clearance = Some(Clearance { poses, distance: found.lower });

@@ -3,23 +3,20 @@
 use crate::clearance::{Clearance, approach, bound_along};
 #[cfg(feature = "audit")]
 use crate::concluded::conclude;
-use crate::contact::{ContactPoint, Material, tangents};
-use crate::faces::vertices_of;
+use crate::contact::ContactPoint;
+use crate::inherited::inherit;
+use crate::measured::Measured;
 use crate::nested::{apart_along_axis_until, bound_from_centers};
 use crate::rigid_body::RigidBody;
 #[cfg(feature = "audit")]
 use d2m_bvh::audit::Place;
 use d2m_bvh::{
-    Budget, Contact, Distance, DistanceOptions, Moving, PairCache, Posed, Proximity, ProximityOptions,
-    QueryError, QueryOptions, Solid, StartState, TimeOfContact, Window, distance_within, proximities_with,
-    reduce_proximities, time_of_contact, time_of_contact_with,
+    Budget, Contact, Distance, DistanceOptions, Moving, PairCache, Posed, QueryError, QueryOptions, Solid,
+    StartState, TimeOfContact, Window, distance_within, time_of_contact, time_of_contact_with,
 };
-use d2m_feature::FeaturePair;
 use d2m_motion::{ConstantTwist, Pose};
 use glam::DVec3;
 
-/// Features within this many gaps are measured in any case.
-pub(crate) const AROUND: f64 = 1.5;
 /// The part of the gap at which a flight ends.
 const STOP: f64 = 0.5;
 /// Of the distance of a pair that is closer than that, the part at which its next flight ends.
@@ -31,20 +28,6 @@ const SLACK: f64 = 0.0625;
 /// 40 operations of 2⁻⁵³ each) reaches with the next halvings.
 const LEAST: f64 = 1.0 / (1u64 << 30) as f64;
 
-/// Sine of the angle by which features may be tilted and still be one contact: the far vertices of a box that lies almost flat.
-const TILT: f64 = 0.1;
-
-/// The normal of a contact is that of a face beside it, if the closest point lies no further from the face than this part of the
-/// gap (of the distance, if that is more) sideways. Where a vertex lies over an edge, the direction between them turns by that
-/// offset over the distance, however small both are: without friction equal boxes on each other would slide apart. A fiftieth was
-/// chosen by experiment: with zero the boxes of `cubes_without_friction_fall_flat_and_stack` slide apart by 6 gaps.
-const FLAT: f64 = 0.02;
-
-/// The part of the gap below which contacts keep their true normals besides those of faces. Flights end between half of the gap
-/// and 1.21 times that, so a pair that is closer than 0.3 has been stopped twice: the contacts with the normals of faces, that it has had
-/// till then, do not keep it apart.
-const TIGHT: f64 = 0.3;
-
 /// Features of a pair from which on fewer are sought, and up to which more are.
 const MANY: usize = 128;
 const FEW: usize = 32;
@@ -53,17 +36,6 @@ const LEAST_REACH: f64 = 1.0 / 64.0;
 
 /// Flights for which a proof that has failed is not tried at most.
 const MOST_WAITING: u32 = 16;
-
-/// The contacts of a pair, and the number of features that they were chosen from.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Measured {
-    pub(crate) contacts: Vec<ContactPoint>,
-    pub(crate) features: usize,
-    /// The distance of the bodies to rounding; the margin, if they are further apart.
-    pub(crate) apart: f64,
-    /// Along the closest features.
-    pub(crate) normal: Option<DVec3>,
-}
 
 /// A pair of bodies that may come close.
 #[derive(Clone, Debug)]
@@ -141,7 +113,7 @@ impl Pair {
         let Measured { mut contacts, features, apart, normal } = measured;
         self.apart = apart;
         self.normal = normal.or(self.normal);
-        remember(&mut contacts, &self.contacts);
+        inherit(&mut contacts, &self.contacts);
         self.nearest = contacts.iter().map(|contact| contact.distance).reduce(f64::min);
         if self.nearest.is_none() {
             self.gap = gap;
@@ -320,134 +292,4 @@ pub(crate) fn held_at(
 fn met(contact: &Contact) -> Outcome {
     let (lo, hi) = (contact.time_lo, contact.time_hi);
     Outcome::Meets { lo, hi, normal: contact.normal, closing: contact.closing_speed }
-}
-
-/// The closest features of two bodies within `margin` at a time of their flights; `pair` numbers the bodies.
-pub(crate) fn measure(
-    bodies: &[RigidBody],
-    pair: (usize, usize),
-    time: f64,
-    margin: f64,
-    gap: f64,
-    material: Material,
-) -> Result<Measured, QueryError> {
-    let (a, b) = (&bodies[pair.0], &bodies[pair.1]);
-    let (posed_a, posed_b) = (a.posed_at(time), b.posed_at(time));
-    let radii = [a.rounding, b.rounding];
-    let options = ProximityOptions::new(margin + (radii[0] + radii[1])).with_cone_slack(TILT);
-    let mut wide = proximities_with(posed_a, posed_b, &options)?;
-    let is_round = radii != [0.0; 2];
-    if is_round {
-        wide = wide.iter().map(|near| near.with_radii(radii)).collect();
-    }
-    // In the order of their distances.
-    let (apart, normal) = (wide.first().map_or(margin, |p| p.distance), wide.first().map(|p| p.normal));
-    // The points of meshes with radii are far apart, so the directions between them are as exact as those of faces.
-    let flatten = |p: &Proximity| {
-        if is_round { None } else { flattened(p, [a, b], [&posed_a.pose, &posed_b.pose], gap) }
-    };
-    let exact = wide.iter().filter(|p| p.tilt == 0.0);
-    let mut normals: Vec<DVec3> = exact.map(|p| flatten(p).unwrap_or(*p).normal).collect();
-    normals.sort_by(|a, b| order(*a, *b));
-    normals.dedup();
-    let straight = |p: &Proximity| {
-        // Two edges whose common normal is outside of their cones would push askew: where faces are almost parallel they
-        // get the normal of a locally closest pair. Without one they are no contact.
-        if is_edges(p) && p.tilt > 0.0 { along(p, &normals, TILT) } else { Some(flatten(p).unwrap_or(*p)) }
-    };
-    let found: Vec<Proximity> = wide.iter().filter_map(straight).collect();
-    let found = reduce_proximities(&found, TILT);
-    let middle = |p: &Proximity| 0.5 * (p.point_a + p.point_b);
-    let runs = b.surface_velocity_at(posed_b.pose.rotation) - a.surface_velocity_at(posed_a.pose.rotation);
-    let contact = |p: &Proximity| ContactPoint {
-        a: pair.0,
-        b: pair.1,
-        feature: p.feature,
-        normal: p.normal,
-        tangents: tangents(p.normal),
-        distance: p.distance,
-        is_expected: false,
-        gap,
-        arm_a: middle(p) - posed_a.pose.translation,
-        arm_b: middle(p) - posed_b.pose.translation,
-        point: middle(p),
-        material,
-        running: tangents(p.normal).map(|tangent| tangent.dot(runs)),
-        row: None,
-        impulse: 0.0,
-        sliding: [0.0; 2],
-    };
-    // Where hardly any of the gap is left, what slides across must not close along the true direction either.
-    let is_tight = |p: &&Proximity| p.tilt == 0.0 && p.distance < TIGHT * gap && !found.contains(*p);
-    let mut all = found.clone();
-    all.extend(wide.iter().filter(is_tight));
-    let contacts = all.iter().filter(|p| p.normal.is_normalized()).map(contact).collect();
-    Ok(Measured { contacts, features: wide.len(), apart, normal })
-}
-
-/// Some total order.
-fn order(a: DVec3, b: DVec3) -> core::cmp::Ordering {
-    a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
-}
-
-fn is_edges(p: &Proximity) -> bool {
-    matches!(p.feature, FeaturePair::EdgeEdge { .. })
-}
-
-/// The proximity with the normal of a face at its features, if that is almost its own.
-fn flattened(p: &Proximity, bodies: [&RigidBody; 2], poses: [&Pose; 2], gap: f64) -> Option<Proximity> {
-    let vertices = vertices_of(p.feature, bodies.map(|body| body.tree.mesh()));
-    let normal = |k: usize| {
-        let direction = poses[k].rotation.conjugate() * p.normal;
-        bodies[k].faces.nearest(&vertices[k], direction).map(|normal| poses[k].transform_vector(normal))
-    };
-    let normals: Vec<DVec3> = (0..2).filter_map(normal).collect();
-    along(p, &normals, (FLAT * gap / p.distance).clamp(FLAT, TILT))
-}
-
-/// The proximity with the nearest of these normals and the distance along it, if there is one within `most`.
-fn along(p: &Proximity, normals: &[DVec3], most: f64) -> Option<Proximity> {
-    let nearest =
-        normals.iter().copied().reduce(|m, n| if n.dot(p.normal) > m.dot(p.normal) { n } else { m })?;
-    let distance = nearest.dot(p.point_b - p.point_a);
-    let mut straight = *p;
-    (straight.normal, straight.distance) = (nearest, distance);
-    ((nearest - p.normal).length() <= most && distance > 0.0).then_some(straight)
-}
-
-/// Takes over the impulses of contacts of the same features; what features that are gone had goes to the nearest contacts, new ones first:
-/// of faces that slide along each other vertices leave and edges cross, but what they press with stays.
-fn remember(contacts: &mut [ContactPoint], old: &[ContactPoint]) {
-    let mut is_new = vec![true; contacts.len()];
-    let mut gone = Vec::new();
-    for before in old {
-        let is_same = |contact: &ContactPoint| contact.feature == before.feature;
-        match contacts.iter().position(is_same) {
-            Some(place) => {
-                inherit(&mut contacts[place], before.total());
-                is_new[place] = false;
-            }
-            None if before.impulse > 0.0 => gone.push(before),
-            None => {}
-        }
-    }
-    for before in gone {
-        let far = |k: &usize| (contacts[*k].point - before.point).length_squared();
-        let nearest = |among: &mut dyn Iterator<Item = usize>| among.min_by(|i, j| far(i).total_cmp(&far(j)));
-        let found = nearest(&mut (0..contacts.len()).filter(|&k| is_new[k]))
-            .or_else(|| nearest(&mut (0..contacts.len())));
-        if let Some(place) = found {
-            inherit(&mut contacts[place], before.total());
-            is_new[place] = false;
-        }
-    }
-}
-
-fn inherit(contact: &mut ContactPoint, impulse: DVec3) {
-    contact.impulse += impulse.dot(contact.normal).max(0.0);
-    // The normal has turned a little: without friction what was along it must not push along the tangents.
-    if contact.material.friction > 0.0 {
-        let [t, u] = contact.tangents;
-        contact.sliding = [contact.sliding[0] + impulse.dot(t), contact.sliding[1] + impulse.dot(u)];
-    }
 }

@@ -1,6 +1,6 @@
 //! The simulation: bodies, settings, time.
 
-use crate::contact::Material;
+use crate::contact::{ContactPoint, Material};
 use crate::joint_rows::Joined;
 use crate::neighbors::Neighbors;
 use crate::numbers::LARGEST;
@@ -276,6 +276,11 @@ impl Simulation {
         self.bodies[id.index()].role = Role::World;
         self.world = Some(id.index());
         Ok(id.index())
+    }
+
+    /// The contacts that a pair had when it was measured last.
+    pub(crate) fn contacts(&self, pair: (usize, usize)) -> &[ContactPoint] {
+        self.pairs.get(&pair).map_or(&[], |pair| &pair.contacts)
     }
 
     pub(crate) fn material(&self, a: usize, b: usize) -> Material {

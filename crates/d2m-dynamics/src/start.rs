@@ -2,8 +2,9 @@
 
 use crate::clearance::are_spheres_apart;
 use crate::contact::{Accuracy, Company, ContactPoint, SolverBody, Start, System};
+use crate::measured::measure;
 use crate::neighbors::posed;
-use crate::pairs::{Pair, distance_of, held_at, measure};
+use crate::pairs::{Pair, distance_of, held_at};
 use crate::rigid_body::RigidBody;
 use crate::velocity::Velocity;
 use crate::{Simulation, SimulationError, StepError};
@@ -199,7 +200,7 @@ impl Simulation {
         let mut moved = bodies[1].clone();
         moved.flight = moved.flight.with_position(moved.flight.position() + way * trial);
         let pair = [bodies[0].clone(), moved];
-        let found = measure(&pair, (0, 1), self.time, 2.0 * trial, trial, self.material(a, b)).ok()?;
+        let found = measure(&pair, (0, 1), self.time, 2.0 * trial, trial, self.material(a, b), &[]).ok()?;
         let back = |c: &ContactPoint| {
             let distance = c.distance - c.normal.dot(way) * trial;
             let mut contact = ContactPoint { a, b, distance, ..*c };

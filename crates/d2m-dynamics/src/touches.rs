@@ -1,6 +1,6 @@
 //! Which bodies touch, and since when.
 
-use crate::pairs::AROUND;
+use crate::measured::AROUND;
 use crate::rigid_body::Role;
 use crate::{BodyId, Simulation, TouchChange, TouchEvent};
 use std::collections::BTreeSet;

@@ -4,7 +4,8 @@ use super::{FEW_ITEMS, Key, Occasion, Step};
 use crate::StepError;
 use crate::contact::ContactPoint;
 use crate::joint_rows::Ahead;
-use crate::pairs::{AROUND, Measured, Pair, measure};
+use crate::measured::{AROUND, Measured, measure};
+use crate::pairs::Pair;
 use crate::rigid_body::RigidBody;
 use d2m_bvh::QueryError;
 use d2m_mesh::parallel::map_owned;
@@ -192,7 +193,7 @@ impl Step<'_> {
             let measured = if is_far {
                 Ok(Measured { apart: margin, ..Measured::default() })
             } else {
-                measure(&sim.bodies, key, time, margin, gap, sim.material(key.0, key.1))
+                measure(&sim.bodies, key, time, margin, gap, sim.material(key.0, key.1), sim.contacts(key))
             };
             (key, Some(measured))
         });

@@ -5,7 +5,7 @@ use super::resolve::LEEWAY;
 use super::{FEW_ITEMS, Key, Occasion, Step};
 use crate::StepError;
 use crate::contact::ContactPoint;
-use crate::pairs::{AROUND, measure};
+use crate::measured::{AROUND, measure};
 use crate::rigid_body::RigidBody;
 use d2m_mesh::parallel::map_owned;
 use std::collections::BTreeMap;
@@ -129,8 +129,16 @@ impl Step<'_> {
             let way = a.bound_approach(b) * (end - event.time);
             let margin = (AROUND * sim.options.gap + way).min(most);
             // Too close to measure is for the event itself to deal with.
-            let measured = measure(&sim.bodies, key, event.time, margin, gap, sim.material(key.0, key.1))
-                .unwrap_or_default();
+            let measured = measure(
+                &sim.bodies,
+                key,
+                event.time,
+                margin,
+                gap,
+                sim.material(key.0, key.1),
+                sim.contacts(key),
+            )
+            .unwrap_or_default();
             let view = View { bodies: [a, b], time, met: event.time, end };
             let known = self.expected.get(&key).map_or(&[][..], Vec::as_slice);
             let seen = measured.contacts.iter().map(|point| view.seen_now(point));

@@ -5,7 +5,7 @@ use super::{Key, Step};
 use crate::StepError;
 use crate::contact::{ASKEW, CROSSING, ContactPoint, NEAR, SolverBody, Squeeze};
 use crate::faces::vertices_of;
-use crate::pairs::{AROUND, measure};
+use crate::measured::{AROUND, measure};
 use crate::rigid_body::RigidBody;
 use crate::solved_body::{body_at, still};
 use crate::velocity::Velocity;
@@ -139,7 +139,7 @@ impl Step<'_> {
                 let material = sim.material(key.0, key.1);
                 // What is too close to be measured is no part of a proof.
                 let measured =
-                    measure(&sim.bodies, key, time, AROUND * gap, gap, material).unwrap_or_default();
+                    measure(&sim.bodies, key, time, AROUND * gap, gap, material, &[]).unwrap_or_default();
                 let mut contacts = measured.contacts;
                 contacts.retain(|contact| contact.distance <= NEAR * gap);
                 if !contacts.is_empty() {

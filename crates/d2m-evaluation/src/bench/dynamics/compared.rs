@@ -33,10 +33,10 @@ impl Scene {
         let shape = tree("box?x=0.25&y=0.35&z=0.2")?;
         let filling = Filling { shape, friction: 0.5, side, count, jitter: 0.05 };
         let mut scene = Self::filled(format!("bin of {count} boxes"), &filling)?;
-        scene.bounds = match count {
-            100 => vec![Bound::Seconds(2.0), Bound::SettledRealTime(20.0)],
-            1000 => vec![Bound::Seconds(25.0), Bound::SettledRealTime(1.0)],
-            _ => Vec::new(),
+        (scene.after, scene.bounds) = match count {
+            100 => (3.0, vec![Bound::Seconds(2.0), Bound::SettledRealTime(20.0)]),
+            1000 => (6.0, vec![Bound::Seconds(25.0), Bound::SettledRealTime(1.0)]),
+            _ => (0.0, Vec::new()),
         };
         Ok(scene)
     }

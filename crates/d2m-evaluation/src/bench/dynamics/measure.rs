@@ -11,7 +11,7 @@ use std::time::Instant;
 pub(super) const NAME: &str = "d2m";
 pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// The last part of a run, by which a scene has settled, in simulated seconds.
+/// The last part of a run, also of what it runs on after its time, by which a scene has settled, in simulated seconds.
 const SETTLED: f64 = 1.0;
 
 /// What a run took, and what was wrong with it.
@@ -73,36 +73,58 @@ struct Watch {
     threads: usize,
     microseconds: Vec<f64>,
     processor: Option<f64>,
-    /// Of the last steps, which are settled.
+    /// Of the last steps, which are settled, in seconds: of the processor, and on the clock.
     last: Option<f64>,
+    last_on_clock: f64,
+}
+
+/// What the time of a step belongs to.
+#[derive(Clone, Copy)]
+struct Counted {
+    run: bool,
+    last: bool,
+}
+
+impl Counted {
+    /// At this time since the times began to count.
+    fn at(since: f64, scene: &Scene) -> Self {
+        let run = (0.0..scene.seconds).contains(&since);
+        Self { run, last: since >= scene.seconds + scene.after - SETTLED }
+    }
 }
 
 impl Watch {
     fn new(threads: usize) -> Self {
-        Self { threads, microseconds: Vec::new(), processor: Some(0.0), last: Some(0.0) }
+        Self { threads, microseconds: Vec::new(), processor: Some(0.0), last: Some(0.0), last_on_clock: 0.0 }
     }
 
     fn now(&self) -> Option<f64> {
         if self.threads == 1 { thread_seconds() } else { processor_seconds() }
     }
 
-    /// Does a step. `left`: simulated seconds before it until the end.
-    fn time<T>(&mut self, left: f64, step: impl FnOnce() -> T) -> T {
+    /// Does a step.
+    fn time<T>(&mut self, counted: Counted, step: impl FnOnce() -> T) -> T {
         let (before, start) = (self.now(), Instant::now());
         let result = step();
-        self.microseconds.push(start.elapsed().as_secs_f64() * 1e6);
+        let on_clock = start.elapsed().as_secs_f64();
         let took = self.now().zip(before).map(|(now, before)| now - before);
         let add = |sum: Option<f64>| sum.zip(took).map(|(sum, took)| sum + took);
-        self.processor = add(self.processor);
-        if left <= SETTLED {
+        if counted.run {
+            self.microseconds.push(on_clock * 1e6);
+            self.processor = add(self.processor);
+        }
+        if counted.last {
             self.last = add(self.last);
+            self.last_on_clock += on_clock;
         }
         result
     }
 
     fn written(self, run: Run, step: f64) -> Run {
         let simulated = self.microseconds.len() as f64 * step;
-        let settled = self.last.filter(|&last| last > 0.0).map(|last| simulated.min(SETTLED) / last);
+        // What sleeps takes less than a tick of the processor's clock.
+        let last = self.last.map(|last| if last > 0.0 { last } else { self.last_on_clock });
+        let settled = last.filter(|&last| last > 0.0).map(|last| simulated.min(SETTLED) / last);
         let took = Took { simulated, processor: self.processor, settled };
         Run { took, microseconds: self.microseconds, ..run }
     }
@@ -114,16 +136,14 @@ pub(super) fn run(mut scene: Scene, threads: usize) -> Result<Run, Error> {
     let starts = scene.poses();
     let mut run = Run::of(&scene, NAME, VERSION, threads);
     let (mut segments, mut watch) = (Vec::<Segment>::new(), Watch::new(threads));
-    let end = scene.before + scene.seconds;
+    let end = scene.before + scene.seconds + scene.after;
     // The steps run where the pool does, so that the thread's own time is theirs.
     pool.install(|| {
         while scene.simulation.time() < end {
-            let now = scene.simulation.time();
-            let (counts, simulation) = (now >= scene.before, &mut scene.simulation);
-            let report = if counts { watch.time(end - now, || simulation.step()) } else { simulation.step() };
-            match report {
+            let counted = Counted::at(scene.simulation.time() - scene.before, &scene);
+            match watch.time(counted, || scene.simulation.step()) {
                 Ok(report) => {
-                    run.events += if counts { u64::from(report.events) } else { 0 };
+                    run.events += if counted.run { u64::from(report.events) } else { 0 };
                     segments.extend(report.segments);
                 }
                 Err(error) => {
@@ -154,8 +174,8 @@ pub(super) fn run(mut scene: Scene, threads: usize) -> Result<Run, Error> {
 pub(super) fn run_peer(scene: &Scene) -> Result<Run, Error> {
     let mut peer = Peer::new(scene)?;
     let (step, mut watch) = (scene.simulation.options().step, Watch::new(1));
-    for k in 0..(scene.seconds / step).ceil() as usize {
-        watch.time(scene.seconds - k as f64 * step, || peer.step());
+    for k in 0..((scene.seconds + scene.after) / step).ceil() as usize {
+        watch.time(Counted::at(k as f64 * step, scene), || peer.step());
     }
     let run = watch.written(Run::of(scene, peer::NAME, peer::VERSION, 1), step);
     let fault = peer.fault(scene);

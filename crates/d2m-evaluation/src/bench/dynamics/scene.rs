@@ -46,9 +46,10 @@ pub(super) struct Scene {
     /// Dynamic bodies.
     pub(super) ids: Vec<BodyId>,
     pub(super) triangles: usize,
-    /// How long it runs before its times count, and after.
+    /// How long it runs before its times count, how long they do, and how long it runs on until it has settled.
     pub(super) before: f64,
     pub(super) seconds: f64,
+    pub(super) after: f64,
     pub(super) expectation: Expectation,
     /// Targets.
     pub(super) bounds: Vec<Bound>,
@@ -102,6 +103,7 @@ impl Scene {
             triangles: 0,
             before: 0.0,
             seconds,
+            after: 0.0,
             expectation,
             bounds: Vec::new(),
         })

@@ -5,7 +5,7 @@ use crate::machine::Machine;
 use crate::statistics::Summary;
 use std::fmt::Write as _;
 
-/// Names of the columns. `settled`: simulated seconds for each second of the processor at the end of a run;
+/// Names of the columns. `settled`: simulated seconds for each second of the processor at the end of a run, where it runs on until it has settled;
 /// `intersecting`: pairs of bodies that are not proven apart at its end, by our static query.
 const COLUMNS: [&str; 19] = [
     "scene",
