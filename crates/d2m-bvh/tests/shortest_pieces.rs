@@ -1,8 +1,9 @@
 //! Pieces of motions that last from one number for a time to the next.
 
 use d2m_bvh::{
-    Evidence, MeshTree, Mode, Moving, PairCache, QueryOptions, TimeOfContact, TriMesh, Window,
-    contact_exists, time_of_contact, time_of_contact_with,
+    ClearanceOptions, ClearanceStatus, Evidence, MeshTree, Mode, Moving, PairCache, QueryOptions, SpanStatus,
+    TimeOfContact, TriMesh, Window, clearance, contact_exists, contact_spans, time_of_contact,
+    time_of_contact_with,
 };
 use d2m_motion::{
     Chain, Composed, ConstantTwist, Joint, JointKind, JointValue, Keyframes, Pose, Retimed, RigidMotion,
@@ -133,4 +134,59 @@ fn what_is_passed_between_two_numbers_of_a_piece_is_met() {
             }
         }
     }
+}
+
+/// What lies between two numbers is not decided there, and says nothing of the bodies after it: they are far from each other to the end.
+#[test]
+fn what_is_passed_between_two_numbers_is_no_contact_after_it() {
+    let cube = cube();
+    let wall = ConstantTwist::REST.with_position(DVec3::X * 5.0);
+    for [begin, next, _] in times() {
+        let unit = next - begin;
+        let times = [begin, next, begin + 1024.0 * unit];
+        let window = Window::try_new(begin, times[2]).unwrap();
+        for (name, motion) in motions(times, 10.0) {
+            // One of them goes at half the speed, and is at the wall then.
+            let is_met = (motion.pose_and_twist(next).0.translation.x - 5.0).abs() <= 1.0;
+            let first = if is_met { SpanStatus::Contact } else { SpanStatus::Undecided };
+            let bodies = [Moving::new(&cube, &*motion), Moving::new(&cube, &wall)];
+            for [a, b] in [bodies, [bodies[1], bodies[0]]] {
+                let spans = contact_spans(a, b, window, &QueryOptions::default(), Some(2.0 * unit)).unwrap();
+                let statuses: Vec<_> = spans.iter().map(|span| span.status).collect();
+                assert_eq!(statuses, [first, SpanStatus::Clear], "{name}: {spans:?}");
+                assert!(spans[0].to <= begin + 4.0 * unit, "{name}: {spans:?}");
+            }
+        }
+    }
+}
+
+/// Cubes that pass through each other between two numbers for time, there and back, at little distances before and after: the tolerance of
+/// their clearance says how wide it is, though the first time is not the one at which they are closest.
+#[test]
+fn a_clearance_between_two_numbers_is_as_wide_as_its_tolerance() {
+    let cube = cube();
+    let unit = 2f64.powi(-33);
+    let at = |k: f64| -1e6 + k * unit;
+    let mut wide = 0;
+    for part in 1..=20 {
+        // So far apart there, and on the way back; turned around after a hundred numbers.
+        let (there, back) = (0.02 + 0.002 * f64::from(part), 0.005);
+        let speed = 2.0 + 2.0 * there;
+        let turn = -1.0 - there + 100.0 * speed;
+        let pieces = vec![
+            vec![-1.0 - there - 100.0 * speed, speed / unit],
+            vec![turn, (1.0 + back - turn) / (98.0 * unit)],
+        ];
+        let motion = slide(JointValue::try_pieces(vec![at(0.0), at(200.0), at(400.0)], pieces).unwrap());
+        let (motion, rest) = (Opaque(motion), ConstantTwist::REST);
+        let window = Window::try_new(at(0.0), at(400.0)).unwrap();
+        let bodies = [Moving::new(&cube, &motion), Moving::new(&cube, &rest)];
+        for [a, b] in [bodies, [bodies[1], bodies[0]]] {
+            let found = clearance(a, b, window, &ClearanceOptions::default()).unwrap();
+            assert_eq!((found.status, found.lower), (ClearanceStatus::Contact, 0.0), "{part}: {found:?}");
+            assert!(found.upper <= 4.0 * found.tolerance, "{part}: {found:?}");
+            wide += u32::from(found.upper > 0.9 * there);
+        }
+    }
+    assert!(wide > 20, "{wide}");
 }

@@ -93,7 +93,8 @@ impl ContactSpan {
 /// Promise: they cover the window. In a clear span the distance is above `min_separation` at every time, ends included, and it ends where
 /// a search from its start ends: within 3.3 tolerances above `min_separation`, or at the end of the window. A contact span begins and ends
 /// at an end of the window or within `resolution` of a time at which the distance is proven to be at most L = `min_separation` + δ; clear
-/// times shorter than `resolution` may be inside. `resolution`: a time; `None`: 1e-6 of the window.
+/// times shorter than `resolution` may be inside. A body that jumps, or that passes through another one from one number for time to the next, is
+/// in no contact that is proven: that step is undecided. `resolution`: a time; `None`: 1e-6 of the window.
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, Moving, QueryOptions, SpanStatus, TriMesh, Window, contact_spans};
@@ -132,7 +133,8 @@ pub fn contact_spans(
     let tolerance = tolerance_of(&[a, b], &options);
     let resolution = resolution.unwrap_or(RESOLUTION * window.length());
     let walk = Walk::new([a, b], window, &options, tolerance, resolution);
-    let mut search = Search { walk, tolerance, spans: Vec::new(), now: window.start(), within: None };
+    let mut search =
+        Search { walk, wanted: tolerance, tolerance, spans: Vec::new(), now: window.start(), within: None };
     search.run()?;
     Ok(search.spans)
 }
@@ -157,6 +159,8 @@ enum Met {
 
 struct Search<'a> {
     walk: Walk<'a>,
+    /// That of the query, and of the level of the last contact.
+    wanted: f64,
     tolerance: f64,
     spans: Vec<ContactSpan>,
     now: f64,
@@ -192,9 +196,7 @@ impl Search<'_> {
             if contact.start == StartState::Apart || contact.time_lo > self.now {
                 self.push(contact.time_lo, SpanStatus::Clear);
             }
-            // Where rounding raises the tolerance, so it does the level.
-            self.walk.level += (contact.tolerance - self.tolerance).max(0.0);
-            self.tolerance = self.tolerance.max(contact.tolerance);
+            self.set_level(&contact)?;
             let mut met = match self.meeting(&contact, from)? {
                 Met::Within(time) => time,
                 Met::Unknown(_) if self.now >= end => return Ok(()),
@@ -238,6 +240,24 @@ impl Search<'_> {
         }
     }
 
+    /// Where rounding raises the tolerance of a search, so it does the level of the contact that it found: a search from the end of the
+    /// contact's bracket begins within that then.
+    ///
+    /// What a jump, or the resolution of time, leaves between bodies raises the tolerance of a contact as well. That is about its bracket, and
+    /// says nothing of any time after it: it would be a level within which bodies far from each other stay.
+    fn set_level(&mut self, contact: &Contact) -> Result<(), QueryError> {
+        self.tolerance = self.wanted;
+        if contact.tolerance > self.wanted
+            && let Some(TimeOfContact::Contact(after)) =
+                self.walk.contact_from(contact.time_hi, self.walk.window.end())?
+            && after.start != StartState::Apart
+        {
+            self.tolerance = self.wanted.max(after.tolerance);
+        }
+        self.walk.level = self.walk.options.min_separation + self.tolerance;
+        Ok(())
+    }
+
     /// A time at which the bodies are within the level, from where a search found them near; where nothing shows one within the
     /// resolution, what is not known is a span of its own.
     ///
@@ -246,23 +266,25 @@ impl Search<'_> {
     /// kind stopped at once, as its tolerance was raised, the time goes on by the resolution.
     fn meeting(&mut self, contact: &Contact, from: Beginning) -> Result<Met, QueryError> {
         let (end, resolution) = (self.walk.window.end(), self.walk.resolution);
+        let mut first = contact.time_lo;
         if contact.evidence > Evidence::Early {
             let met = contact.time_hi;
-            if met - self.now > resolution {
-                self.push(met, SpanStatus::Undecided);
+            // The bracket proves it, whether or not a single time does, unless that is a tolerance beyond the level's.
+            let proves = contact.evidence == Evidence::Crossing || contact.tolerance <= self.tolerance;
+            if self.walk.is_within(met) || proves {
+                return Ok(self.met_at(met));
             }
-            // The bracket proves it, whether or not a single time does.
-            let _ = self.walk.is_within(met);
-            return Ok(Met::Within(met));
+            first = met;
         }
         let least = match from {
-            Beginning::Anywhere => power_of_two(-30),
-            Beginning::Above => 1.0,
+            Beginning::Above if first <= self.now => 1.0,
+            Beginning::Anywhere | Beginning::Above => power_of_two(-30),
         };
+        let last = (first + resolution).max(first.next_up()).min(end);
         for part in [0.0, power_of_two(-30), power_of_two(-20), power_of_two(-10), 0.125, 0.5, 1.0] {
-            let later = (contact.time_lo + part * resolution).min(end);
+            let later = if part < 1.0 { (first + part * resolution).min(last) } else { last };
             if self.walk.is_within(later) {
-                return Ok(Met::Within(later));
+                return Ok(self.met_at(later));
             }
             if part >= least && self.walk.is_apart(later)? {
                 // Bodies that part are a little above the level for a while, still near a time of contact.
@@ -271,11 +293,16 @@ impl Search<'_> {
                 return Ok(Met::Unknown(Beginning::Above));
             }
         }
-        self.push(
-            (contact.time_lo + resolution).max(contact.time_lo.next_up()).min(end),
-            SpanStatus::Undecided,
-        );
+        self.push(last, SpanStatus::Undecided);
         Ok(Met::Unknown(Beginning::Anywhere))
+    }
+
+    /// Within the level at a time; what is more than the resolution before it is not known.
+    fn met_at(&mut self, time: f64) -> Met {
+        if time - self.now > self.walk.resolution {
+            self.push(time, SpanStatus::Undecided);
+        }
+        Met::Within(time)
     }
 
     /// The span from where the last one ended; joined with that if nothing else is known of it. None of no length, but in a window of none.

@@ -354,7 +354,9 @@ impl<'a> Descent<'a> {
         if is_met {
             return self.meeting(contact, &lowest);
         }
-        self.describe(&closer(met, lowest), 0.0, ClearanceStatus::Contact)
+        // Where numbers for time are too far apart for the tolerance, as much is left at the time of contact as the search says.
+        let tolerance = self.tolerance.max(contact.tolerance);
+        Clearance { tolerance, ..self.describe(&closer(met, lowest), 0.0, ClearanceStatus::Contact) }
     }
 
     /// The bodies are proven to share a point.

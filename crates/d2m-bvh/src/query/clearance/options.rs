@@ -162,7 +162,8 @@ pub struct Clearance {
     pub triangle_a: u32,
     /// Triangle of B.
     pub triangle_b: u32,
-    /// The tolerance δ that was used: that of the options, unless rounding forbids it.
+    /// The tolerance δ that was used: that of the options, unless rounding forbids it; of bodies that meet at least that of the contact,
+    /// which is what is left at its time where numbers for time are too far apart for less.
     pub tolerance: f64,
     /// What is known.
     pub status: ClearanceStatus,
