@@ -1,7 +1,7 @@
 //! Rest: islands whose surfaces have been slow for long enough do not move until something comes close.
 
 use crate::Simulation;
-use crate::contact::ContactPoint;
+use crate::contact::{ContactPoint, NEAR};
 use crate::group::CROWD;
 use crate::quiet::{Quiet, Rest, Surface};
 use crate::rigid_body::RigidBody;
@@ -16,17 +16,24 @@ impl Simulation {
         if !self.options.sleeping {
             return;
         }
-        let mut rubs = vec![false; self.bodies.len()];
-        let is_rubbed = |c: &ContactPoint| c.impulse > 0.0 && c.material.friction > 0.0;
-        for (&(a, b), _) in self.pairs.iter().filter(|(_, pair)| pair.contacts.iter().any(is_rubbed)) {
-            (rubs[a], rubs[b]) = (true, true);
+        let (mut rubs, mut presses) = (vec![false; self.bodies.len()], vec![false; self.bodies.len()]);
+        for (&(a, b), pair) in &self.pairs {
+            for contact in pair.contacts.iter().filter(|contact| contact.impulse > 0.0) {
+                let has_friction = contact.material.friction > 0.0;
+                for body in [a, b] {
+                    presses[body] = true;
+                    rubs[body] |= has_friction;
+                }
+            }
         }
         let is_crowd = self.bodies.len() > CROWD;
-        for (body, rubs) in self.bodies.iter_mut().zip(rubs) {
+        for (i, body) in self.bodies.iter_mut().enumerate() {
             if !body.is_dynamic() || body.asleep {
                 continue;
             }
-            let rest = match (rubs, is_crowd) {
+            let rest = match (rubs[i], is_crowd) {
+                // What restores the gap lets it hop: what flies says so by its way.
+                (false, true) if !presses[i] => Rest::ByWay,
                 (false, _) => Rest::Unbraked,
                 (true, false) => Rest::BySpeed,
                 (true, true) => Rest::ByWay,
@@ -49,9 +56,12 @@ impl Simulation {
             .iter()
             .map(|body| body.is_dynamic() && !body.asleep && !body.quiet.is_long())
             .collect();
-        let pressed = |contact: &ContactPoint| contact.impulse > 0.0;
+        // What hops on a heap wakes it again if it is not as quiet.
+        let touches = |contact: &ContactPoint| {
+            contact.impulse > 0.0 || is_crowd && contact.distance <= NEAR * contact.gap
+        };
         for (&(a, b), pair) in &self.pairs {
-            if !pair.contacts.iter().any(pressed) {
+            if !pair.contacts.iter().any(touches) {
                 continue;
             }
             let dynamic = |i: usize| self.bodies[i].is_dynamic();

@@ -65,7 +65,8 @@ impl Scene {
         let height = 30.0;
         for (axis, other) in [(DVec3::X, DVec3::Z), (DVec3::Z, DVec3::X)] {
             for side in [-1.0, 1.0] {
-                let body = held("wall", axis * wall + other * outer + DVec3::Y * height)?;
+                let name = format!("wall towards {}", axis * side);
+                let body = held(&name, axis * wall + other * outer + DVec3::Y * height)?;
                 let place = axis * (side * (inner + wall)) + DVec3::Y * (height + 0.01);
                 scene.add(body.with_position(place))?;
             }
@@ -129,7 +130,8 @@ impl Scene {
                 scene.add(Body::new("pin", pin).with_kind(Kind::Static).with_position(place))?;
                 let plate = tree("box?x=0.6&y=0.6&z=0.05")?;
                 for z in [-0.3, 0.3] {
-                    let plate = Body::new("plate", Arc::clone(&plate)).with_kind(Kind::Static);
+                    let plate =
+                        Body::new(format!("plate at {z}"), Arc::clone(&plate)).with_kind(Kind::Static);
                     scene.add(plate.with_position(place + DVec3::Z * z))?;
                 }
                 scene.bounds = vec![Bound::SecondsPerSimulated(20.0)];
@@ -163,6 +165,19 @@ impl Scene {
 mod tests {
     use super::super::{judge, peer};
     use super::*;
+
+    /// A heap comes to rest, and what hops on it does not wake it again and again.
+    #[test]
+    fn a_bin_of_boxes_falls_asleep() {
+        let mut scene = Scene::bin(100, 5).unwrap();
+        let asleep = |scene: &Scene| scene.ids.iter().all(|&id| scene.simulation.is_asleep(id));
+        while !asleep(&scene) {
+            scene.simulation.step().unwrap();
+            assert!(scene.simulation.time() < scene.seconds + scene.after - 1.0);
+        }
+        scene.simulation.step_to(scene.simulation.time() + 1.0).unwrap();
+        assert!(asleep(&scene));
+    }
 
     /// Every scene has the bodies that it states, and nothing intersects at the start for either engine.
     #[test]

@@ -98,6 +98,7 @@ fn joint_value(joint: &Joint, scene: &Scene) -> Result<Value, Error> {
 mod tests {
     use super::super::compared::Bearing;
     use super::*;
+    use std::collections::BTreeSet;
 
     /// A mesh is written once, a number comes back with all of its bits, and every joint names its bodies.
     #[test]
@@ -109,6 +110,8 @@ mod tests {
             let path = folder.join(stem(&scene) + ".json");
             let read: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
             let bodies = read["bodies"].as_array().unwrap();
+            let names: BTreeSet<_> = bodies.iter().map(|body| body["name"].as_str()).collect();
+            assert_eq!(names.len(), bodies.len());
             assert_eq!(bodies.len(), scene.bodies.len());
             for (value, body) in bodies.iter().zip(&scene.bodies) {
                 let place = if matches!(body.kind, Kind::Kinematic(_)) { "motion" } else { "pose" };
