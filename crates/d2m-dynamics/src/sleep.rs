@@ -56,12 +56,14 @@ impl Simulation {
             .iter()
             .map(|body| body.is_dynamic() && !body.asleep && !body.quiet.is_long())
             .collect();
-        // What hops on a heap wakes it again if it is not as quiet.
+        // What hops on a heap bears on it all the same.
         let touches = |contact: &ContactPoint| {
             contact.impulse > 0.0 || is_crowd && contact.distance <= NEAR * contact.gap
         };
         for (&(a, b), pair) in &self.pairs {
-            if !pair.contacts.iter().any(touches) {
+            let is_held = pair.contacts.iter().any(touches);
+            // Whatever is in contact with others is solved with them, and wakes them, in the next step.
+            if !is_held && !(is_crowd && !pair.contacts.is_empty()) {
                 continue;
             }
             let dynamic = |i: usize| self.bodies[i].is_dynamic();
@@ -73,7 +75,8 @@ impl Simulation {
             if dynamic(a) && dynamic(b) {
                 join(&mut parent, a, b);
             }
-            (held_up[a], held_up[b]) = (true, true);
+            held_up[a] |= is_held;
+            held_up[b] |= is_held;
             restless[a] |= moving(b);
             restless[b] |= moving(a);
         }
