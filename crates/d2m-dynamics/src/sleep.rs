@@ -63,7 +63,8 @@ impl Simulation {
         for (&(a, b), pair) in &self.pairs {
             let is_held = pair.contacts.iter().any(touches);
             // Whatever is in contact with others is solved with them, and wakes them, in the next step.
-            if !is_held && !(is_crowd && !pair.contacts.is_empty()) {
+            let is_met = is_crowd && !pair.contacts.is_empty();
+            if !is_held && !is_met {
                 continue;
             }
             let dynamic = |i: usize| self.bodies[i].is_dynamic();
