@@ -80,7 +80,7 @@ struct Nearest {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Gain {
-    /// Two triangles are apart for less than what is asked for.
+    /// Two triangles are apart for less than the time that is wanted.
     TooShort,
     Open,
 }
