@@ -1,8 +1,8 @@
 //! Pieces of motions that last from one number for a time to the next.
 
 use d2m_bvh::{
-    ClearanceOptions, ClearanceStatus, Evidence, MeshTree, Mode, Moving, PairCache, QueryOptions, SpanStatus,
-    TimeOfContact, TriMesh, Window, clearance, contact_exists, contact_spans, time_of_contact,
+    ClearanceOptions, ClearanceStatus, Evidence, MeshTree, Mode, Moving, PairCache, QueryOptions, Solid,
+    SpanStatus, TimeOfContact, TriMesh, Window, clearance, contact_exists, contact_spans, time_of_contact,
     time_of_contact_with,
 };
 use d2m_motion::{
@@ -189,4 +189,33 @@ fn a_clearance_between_two_numbers_is_as_wide_as_its_tolerance() {
         }
     }
     assert!(wide > 20, "{wide}");
+}
+
+/// A blade above a plate turns down to it from one number for time to the next, at rest at first: what is proven of the way is above a level,
+/// and the bound of the clearance counts no more than that.
+#[test]
+fn a_clearance_between_two_numbers_is_no_more_than_what_is_left_at_its_end() {
+    let corners = vec![DVec3::NEG_X, DVec3::X, DVec3::Z * 0.01];
+    let blade = MeshTree::new(TriMesh::try_new(corners, vec![[0, 1, 2]]).unwrap());
+    let corners = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]].map(|[x, z]| DVec3::new(x, 0.0, z));
+    let plate = MeshTree::new(TriMesh::try_new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap());
+    let options = ClearanceOptions::default().with_accuracy(1.0).with_solid(Solid::Surface);
+    for [begin, next, _] in times() {
+        let unit = next - begin;
+        for part in [0.84, 0.86, 0.88] {
+            // The blade's end is lowered by this part of the height, all but what the third power of the angle is.
+            let (angle, height) = (0.1, 0.1 / part);
+            let value =
+                JointValue::try_pieces(vec![begin, next], vec![vec![0.0, 0.0, angle / (unit * unit)]]);
+            let kind = JointKind::Revolute { axis: DVec3::Z, value: value.unwrap() };
+            let joint = Joint::try_new(DVec3::Y * height, DQuat::IDENTITY, kind).unwrap();
+            let (turning, rest) = (Chain::try_new(vec![joint]).unwrap(), ConstantTwist::REST);
+            let left = turning.pose_and_twist(next).0.transform_point(DVec3::NEG_X).y;
+            let bodies = [Moving::new(&blade, &turning), Moving::new(&plate, &rest)];
+            for [a, b] in [bodies, [bodies[1], bodies[0]]] {
+                let found = clearance(a, b, Window::try_new(begin, next).unwrap(), &options).unwrap();
+                assert!(found.lower <= left && left <= height, "{begin}, {part}: {found:?}, {left}");
+            }
+        }
+    }
 }

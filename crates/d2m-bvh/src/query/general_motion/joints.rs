@@ -54,7 +54,7 @@ impl Advance<'_> {
             TimeOfContact::Undecided { .. } => Ok(undecided),
             TimeOfContact::Contact(_) if self.sweep_apart(until) => {
                 #[cfg(feature = "audit")]
-                self.conclude(Place::SweptBoxes, until, 0.0, 0.0);
+                self.conclude(Place::SweptBoxes, until, self.tolerance, 0.0);
                 Ok(Step::FreeUntil(until))
             }
             // Bodies that hardly move are known too badly, whatever the time.
@@ -164,12 +164,14 @@ impl Advance<'_> {
         self.bodies.map(|moving| moving.body.enclose_placed(&moving.motion.enclose_pose(span)))
     }
 
-    /// Are these boxes further apart than contact is, along one axis? What is not a number, or empty, proves nothing.
+    /// Are these boxes further apart than the minimum separation and the tolerance, as all that a search calls free is, along one axis? What
+    /// is not a number, or empty, proves nothing.
     fn sweep_apart(&self, until: f64) -> bool {
         let [a, b] = self.sweep(until);
+        let level = (self.options.min_separation + self.tolerance).next_up();
         let beyond = |high: Interval, low: Interval| {
             let gap = Interval::point(high.lo()) - Interval::point(low.hi());
-            !gap.is_empty() && gap.lo() > self.options.min_separation
+            !gap.is_empty() && gap.lo() > level
         };
         let apart =
             |a: Interval, b: Interval| !a.is_empty() && !b.is_empty() && (beyond(a, b) || beyond(b, a));
