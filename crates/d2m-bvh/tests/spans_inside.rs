@@ -146,3 +146,30 @@ fn a_sheet_that_leaves_a_solid_takes_few_searches() {
     }
     assert!(leave >= 8, "{leave}");
 }
+
+/// A resolution that is finer than numbers for time: a body that is deep inside of the other one for a few of them is followed from each to the next.
+#[test]
+fn solids_are_followed_where_time_is_coarser_than_the_resolution() {
+    let (large, small) = (cuboid(DVec3::ONE), cuboid(DVec3::splat(0.125)));
+    let begin = 2f64.powi(30);
+    let unit = begin.next_up() - begin;
+    for numbers in [2.0, 5.0, 12.0] {
+        let (end, speed) = (begin + 64.0 * unit, 2.0 / numbers);
+        let value =
+            JointValue::try_pieces(vec![begin, end], vec![vec![-20.0 * speed, speed / unit]]).unwrap();
+        let kind = JointKind::Prismatic { axis: DVec3::X, value };
+        let motion =
+            Chain::try_new(vec![Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, kind).unwrap()]).unwrap();
+        let bodies = [Moving::new(&large, &ConstantTwist::REST), Moving::new(&small, &motion)];
+        for [a, b] in [bodies, [bodies[1], bodies[0]]] {
+            let window = Window::try_new(begin, end).unwrap();
+            let spans = contact_spans(a, b, window, &QueryOptions::default(), None).unwrap();
+            let near = |time: f64| ((time - begin) / unit - 20.0).abs() * speed <= 1.125 + speed;
+            let contacts = spans.iter().filter(|span| span.status == SpanStatus::Contact);
+            let [first, last] = [&spans[0], &spans[spans.len() - 1]];
+            assert_eq!([first.status, last.status], [SpanStatus::Clear; 2], "{numbers}: {spans:?}");
+            assert!(contacts.clone().count() > 0, "{numbers}: {spans:?}");
+            assert!(contacts.clone().all(|span| near(span.from) && near(span.to)), "{numbers}: {spans:?}");
+        }
+    }
+}

@@ -303,7 +303,12 @@ impl<'a> Walk<'a> {
                 conclude_overlap(&self.bodies, solids, Claimed { from, to: until, distance: self.level });
                 return until;
             }
-            until = from + SHORTER * (until - from);
+            // Next to each other numbers for time become no shorter.
+            let shorter = from + SHORTER * (until - from);
+            if shorter >= until || self.meter.is_exhausted() {
+                return from;
+            }
+            until = shorter;
         }
         from
     }
