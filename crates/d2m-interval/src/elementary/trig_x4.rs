@@ -54,6 +54,15 @@ fn hull(a: Sums, b: Sums, least: F64x4, greatest: F64x4) -> IntervalX4 {
     IntervalX4 { neg_lo: minus_a.max(minus_b).min(one).max(least), hi: a.max(b).min(one).max(greatest) }
 }
 
+/// Greatest cosine and sine, least cosine and sine: 1 where a multiple of π/2 that has it is between the first and the last one,
+/// else −2.
+#[cold]
+fn extrema(first: [i32; 4], last: [i32; 4]) -> [F64x4; 4] {
+    let inside: [u32; 4] = core::array::from_fn(|i| residues(first[i], last[i]));
+    let end = |j: u32| F64x4::new(inside.map(|inside| if inside >> j & 1 == 1 { 1.0 } else { -2.0 }));
+    [end(0), end(1), end(2), end(3)]
+}
+
 impl IntervalX4 {
     /// `(sin x, cos x)`, four at once.
     ///
@@ -67,17 +76,15 @@ impl IntervalX4 {
         let (Some(a), Some(b)) = (point(-self.neg_lo), point(self.hi)) else {
             return self.sin_cos_slow();
         };
-        let mut ends = [[-2.0; 4]; 4];
-        for i in 0..4 {
-            let quadrant = |turns: f64| turns.to_bits() as i32;
-            let first = quadrant(a.turns[i]) + i32::from(a.r[i] > NEAR);
-            let last = quadrant(b.turns[i]) - i32::from(b.r[i] < -NEAR);
-            let inside = residues(first, last);
-            for (j, end) in ends.iter_mut().enumerate() {
-                end[i] = if inside >> j & 1 == 1 { 1.0 } else { -2.0 };
-            }
+        let quadrant = |turns: f64| turns.to_bits() as i32;
+        let first: [i32; 4] = core::array::from_fn(|i| quadrant(a.turns[i]) + i32::from(a.r[i] > NEAR));
+        let last: [i32; 4] = core::array::from_fn(|i| quadrant(b.turns[i]) - i32::from(b.r[i] < -NEAR));
+        let mut ends = [F64x4::splat(-2.0); 4];
+        // No multiple of π/2 is in most narrow intervals.
+        if (0..4).any(|i| first[i] <= last[i]) {
+            ends = extrema(first, last);
         }
-        let [cos_max, sin_max, cos_min, sin_min] = ends.map(F64x4::new);
+        let [cos_max, sin_max, cos_min, sin_min] = ends;
         (hull(a.sin, b.sin, sin_min, sin_max), hull(a.cos, b.cos, cos_min, cos_max))
     }
 
