@@ -32,11 +32,16 @@ const MOST_LEADS: f64 = 64.0;
 
 /// How fast what leaves the common screw takes a gap.
 #[derive(Clone, Copy, Debug)]
-enum Closing {
+struct Closing {
+    /// The part of what moves across the axis that counts.
+    across: f64,
+    /// Another rate.
+    rate: f64,
+}
+
+impl Closing {
     /// As fast as it moves.
-    AnyDirection,
-    /// This part of what moves across the axis counts, and another rate.
-    Along { across: f64, rate: f64 },
+    const ANY_DIRECTION: Self = Self { across: 1.0, rate: 0.0 };
 }
 
 /// What is done with two cells that may come near each other.
@@ -236,7 +241,7 @@ impl Walk<'_> {
                 let apart = (b.near - a.far).max(a.near - b.far);
                 let heights = [a, b].map(|part| Range { low: part.low, high: part.high });
                 let clear =
-                    self.clear_while(apart, Closing::AnyDirection).max(self.heights_clear_for(heights));
+                    self.clear_while(apart, Closing::ANY_DIRECTION).max(self.heights_clear_for(heights));
                 clear < self.length
             });
         }
@@ -283,7 +288,7 @@ impl Walk<'_> {
                 let rho = 0.5 * first.near.max(second.near);
                 let slack = first.slack + second.slack;
                 let apart = lead / self.screw.steepness(rho);
-                self.clear = self.clear.min(self.clear_while(apart.min(rho) - slack, Closing::AnyDirection));
+                self.clear = self.clear.min(self.clear_while(apart.min(rho) - slack, Closing::ANY_DIRECTION));
             }
             for k in leads.0 as i64..=leads.1 as i64 {
                 self.shift = k as f64 * lead;
@@ -362,19 +367,26 @@ impl Walk<'_> {
         let (distances, lengths) = along.distances(slabs, self.shift, steep);
         if self.screw.slide == 0.0 && !self.leaves_screw() {
             let apart = distances.into_iter().fold(0.0, |a: f64, b| if b > a { b } else { a });
-            return self.clear_while(apart.min(rho) - slack, Closing::AnyDirection);
+            return self.clear_while(apart.min(rho) - slack, Closing::ANY_DIRECTION);
         }
         let per_radius = self.screw.h / rho;
-        let clear = |j: usize| {
+        let mut best: f64 = 0.0;
+        let mut clear = [0.0; N];
+        // Without branches: several are done at once.
+        for j in 0..N {
             // A direction of no length says nothing.
             let distance = if distances[j] > 0.0 { distances[j] } else { 0.0 };
             let (alpha, beta) = (along.alpha[j], along.beta[j]);
             let across =
                 (alpha * alpha + beta * beta * per_radius * per_radius).sqrt() * UP / lengths[j] * UP;
-            self.clear_while(distance - slack, Closing::Along { across, rate: self.rate(beta, lengths[j]) })
-        };
-        let clear = (0..N).map(clear).fold(0.0, f64::max);
-        clear.min(self.clear_while(rho - slack, Closing::AnyDirection))
+            clear[j] =
+                self.clear_while(distance - slack, Closing { across, rate: self.rate(beta, lengths[j]) });
+        }
+        for time in clear {
+            best = if time > best { time } else { best };
+        }
+        let any_direction = self.clear_while(rho - slack, Closing::ANY_DIRECTION);
+        if any_direction < best { any_direction } else { best }
     }
 
     /// Whether the bodies leave the common screw across its axis by more than the level: else no direction is better for it than another one.
@@ -392,21 +404,12 @@ impl Walk<'_> {
     /// For how long points that the common screw alone would keep `apart` do not come within the level.
     #[inline(always)]
     fn clear_while(&self, apart: f64, closing: Closing) -> f64 {
-        let screw = self.screw;
-        let (across, rate) = match closing {
-            Closing::AnyDirection => (1.0, 0.0),
-            Closing::Along { across, rate } => (across, rate),
-        };
+        let (screw, Closing { across, rate }) = (self.screw, closing);
         let room = apart - self.level - screw.tilted - across * screw.across_now * UP;
         let drift = (screw.drift + across * screw.across_rate * UP + rate) * UP;
-        if room.is_nan() || room <= 0.0 {
-            // As long as nothing at all.
-            0.0
-        } else if drift * self.length <= room {
-            self.length
-        } else {
-            room / drift
-        }
+        let clear = if drift * self.length <= room { self.length } else { room / drift };
+        // As long as nothing at all, also where the room is no number.
+        if room > 0.0 { clear } else { 0.0 }
     }
 }
 

@@ -80,12 +80,17 @@ struct Placed {
 /// Vertices of A's triangle (from the tree's center, body axes) moved into B's frame.
 #[inline(always)]
 pub(crate) fn place_a<D: Doubles>(frame: &Frame, triangle: &[DVec3; 3]) -> [DVec3; 3] {
-    let (r, apart) = (&frame.rotation, D::load(&frame.apart));
     [
-        (r.times::<D>(triangle[0]) + apart).store().to_vec(),
-        (r.times::<D>(triangle[1]) + apart).store().to_vec(),
-        (r.times::<D>(triangle[2]) + apart).store().to_vec(),
+        place_point::<D>(frame, triangle[0]),
+        place_point::<D>(frame, triangle[1]),
+        place_point::<D>(frame, triangle[2]),
     ]
+}
+
+/// The same for a point.
+#[inline(always)]
+pub(crate) fn place_point<D: Doubles>(frame: &Frame, point: DVec3) -> DVec3 {
+    (frame.rotation.times::<D>(point) + D::load(&frame.apart)).store().to_vec()
 }
 
 /// The separating-axis test of a pair at the time of the frame. `triangles`: of A and of B, vertices from the trees' centers,

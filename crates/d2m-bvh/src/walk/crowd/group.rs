@@ -8,22 +8,29 @@ use glam::DVec3;
 /// The vertices below some boxes of a body.
 pub(super) struct Group<'a> {
     body: &'a SceneBody<'a>,
-    /// Which boxes and which vertices were added.
+    /// Which boxes were added.
     seen: Vec<bool>,
-    seen_vertices: Vec<bool>,
+    pub(super) vertices: Vertices,
+}
+
+/// Vertices of a body.
+pub(super) struct Vertices {
     /// Relative to the tree's center.
     pub(super) points: Vec<DVec3>,
+    /// Which of the points each vertex of the mesh is; none that was not added.
+    pub(super) places: Vec<Option<u32>>,
 }
 
 impl<'a> Group<'a> {
     pub(super) fn new(body: &'a SceneBody<'a>) -> Self {
         let seen = vec![false; WIDTH * body.tree.nodes().len()];
-        let seen_vertices = vec![false; body.tree.mesh().vertices().len()];
-        Self { body, seen, seen_vertices, points: Vec::new() }
+        let places = vec![None; body.tree.mesh().vertices().len()];
+        Self { body, seen, vertices: Vertices { points: Vec::new(), places } }
     }
 
     /// `None`: too many, or the time is over.
     pub(super) fn add(&mut self, index: u32, most: usize, clock: &mut Meter) -> Option<()> {
+        let Vertices { points, places } = &mut self.vertices;
         let mut stack = vec![index as usize];
         while let Some(index) = stack.pop() {
             if core::mem::replace(&mut self.seen[index], true) {
@@ -33,9 +40,10 @@ impl<'a> Group<'a> {
             match self.body.tree.nodes()[index / WIDTH].below(index % WIDTH) {
                 Below::Triangle(triangle) => {
                     for vertex in self.body.tree.mesh().triangles()[triangle as usize] {
-                        if !core::mem::replace(&mut self.seen_vertices[vertex as usize], true) {
-                            self.points
-                                .push(self.body.place(self.body.tree.mesh().vertices()[vertex as usize]));
+                        let place = &mut places[vertex as usize];
+                        if place.is_none() {
+                            *place = Some(points.len() as u32);
+                            points.push(self.body.place(self.body.tree.mesh().vertices()[vertex as usize]));
                         }
                     }
                 }
@@ -44,7 +52,7 @@ impl<'a> Group<'a> {
                     stack.extend((0..used.min(WIDTH)).map(|lane| node as usize * WIDTH + lane));
                 }
             }
-            if self.points.len() > most {
+            if points.len() > most {
                 return None;
             }
         }

@@ -31,7 +31,7 @@ use d2m_mesh::Meter;
 use d2m_mesh::audit::{Part, Place};
 use d2m_mesh::node::WIDTH;
 use glam::DVec3;
-use group::Group;
+use group::{Group, Vertices};
 use moving::{Moving, PlaneSearch, Separation};
 use paths::Side;
 use reaches::Reaches;
@@ -54,6 +54,13 @@ pub(super) struct Progress {
     pub(super) least: u32,
     /// Batches that were handed out.
     pub(super) batches: u32,
+}
+
+/// What planes for a part of the time did.
+#[derive(Clone, Copy, Debug)]
+enum Planes {
+    Part,
+    PartNothing,
 }
 
 /// When a search examines its crowd next.
@@ -83,6 +90,16 @@ impl Patience {
         }
     }
 
+    /// Sets when the next planes are tried after those that were begun at so much work: once the search has done as much as they took, and
+    /// where they proved nothing, as much as all so far.
+    fn rest_after(&mut self, search: &Search<'_>, before: u64, planes: Planes) {
+        let work = search.work();
+        self.rest_until = match planes {
+            Planes::Part => work + (work - before),
+            Planes::PartNothing => 2 * work,
+        };
+    }
+
     /// Are the pairs that wait to be counted now?
     #[inline(always)]
     pub(super) const fn is_due(&self, batches: u32, tests: u64) -> bool {
@@ -92,8 +109,8 @@ impl Patience {
 
 /// The vertices below the pairs that wait, and what a plane between them has to leave.
 struct Crowd {
-    /// Of A and of B, relative to the trees' centers.
-    points: [Vec<DVec3>; 2],
+    /// Of A and of B.
+    vertices: [Vertices; 2],
     /// That of the search: pairs that a plane parts are as clear as those that are followed one by one, so that no answer
     /// depends on which of the two it was, and caches may rely on it.
     level: f64,
@@ -102,9 +119,14 @@ struct Crowd {
 }
 
 impl Crowd {
+    const fn points(&self) -> [&Vec<DVec3>; 2] {
+        let [a, b] = &self.vertices;
+        [&a.points, &b.points]
+    }
+
     /// What the comparison along so many directions costs, in node tests.
     fn cost(&self, directions: u64) -> u64 {
-        let vertices = self.points.iter().map(Vec::len).sum::<usize>() as u64;
+        let vertices = self.vertices.iter().map(|of| of.points.len()).sum::<usize>() as u64;
         (vertices * directions).div_ceil(VERTICES_A_TEST)
     }
 }
@@ -149,7 +171,7 @@ impl Search<'_> {
             None => state.motion.frame::<L::Doubles>(known),
         };
         let span = (state.limit_offset - known).next_up();
-        let Some(moving) = Moving::new(self.scene, &crowd.points, &frame, span, &mut clock) else { return };
+        let Some(moving) = Moving::new(self.scene, crowd.points(), &frame, span, &mut clock) else { return };
         let starts = [state.behind.direction, moving.between()].map(DVec3::normalize_or_zero);
         let mut tried = starts.to_vec();
         for first in starts {
@@ -165,9 +187,12 @@ impl Search<'_> {
             }
         }
         for n in tried.into_iter().filter(|&n| n != DVec3::ZERO) {
-            let [mut a, mut b] =
-                [Side::A, Side::B].map(|side| Reaches::new(self.scene, side, &frame, span, n));
-            for item in self.scratch.queue.items().chain(batch.items()) {
+            let [of_a, of_b] = &crowd.vertices;
+            let mut a = Reaches::new(&self.scene.a, &of_a.places, moving.reaches(Side::A, n));
+            let mut b = Reaches::new(&self.scene.b, &of_b.places, moving.reaches(Side::B, n));
+            let items = self.scratch.queue.items().chain(batch.items());
+            // Later ones do not matter, and their vertices were not gathered.
+            for item in items.filter(|item| item.key < state.limit) {
                 if clock.step().is_err() {
                     return;
                 }
@@ -210,12 +235,12 @@ impl Search<'_> {
         let before_planes = self.work();
         let most_work = WORK_A_PAIR * waiting.max(CROWD) as u64;
         let key = self.advance_together::<L>(state, least, (&crowd, most_work), &mut clock);
+        let planes = if key > least { Planes::Part } else { Planes::PartNothing };
         #[cfg(feature = "audit")]
         if key > least {
             self.conclude_crowd(state.span([known, f64::from(key) * state.step]), batch, state.limit);
         }
-        let work = self.work();
-        patience.rest_until = work + (work - before_planes);
+        patience.rest_after(self, before_planes, planes);
         patience.examined_to = Some(state.limit);
         if key > least {
             // The next step of the crowd comes as soon as this one did.
@@ -246,7 +271,10 @@ impl Search<'_> {
         clock: &mut Meter,
     ) -> u32 {
         let enough = self.work() + most_work;
-        let (mut key, mut halvings) = (least, 1);
+        let Some(most_halvings) = state.limit.saturating_sub(least).checked_ilog2() else { return least };
+        // A plane that parts all for a time parts them for each shorter one: the shortest comes first, so that one attempt is all that is
+        // lost where there is none.
+        let (mut key, mut halvings) = (least, most_halvings.min(MOST_HALVINGS));
         let mut newest = state.behind.direction.normalize_or_zero();
         for _ in 0..MOST_PLANES {
             let ticks = state.limit.saturating_sub(key) >> halvings;
@@ -256,7 +284,7 @@ impl Search<'_> {
             let frame = state.motion.frame::<L::Doubles>(f64::from(key) * state.step);
             // Exact: a number of 30 bits times a power of two.
             let span = f64::from(ticks) * state.step;
-            let Some(moving) = Moving::new(self.scene, &crowd.points, &frame, span, clock) else { break };
+            let Some(moving) = Moving::new(self.scene, crowd.points(), &frame, span, clock) else { break };
             let mut parted = false;
             for first in [newest, moving.between().normalize_or_zero()] {
                 let separation = self.separation(&moving, (first, crowd.level), crowd, clock);
@@ -266,8 +294,8 @@ impl Search<'_> {
                 }
             }
             if parted {
+                halvings = if key == least { 1 } else { u32::max(halvings, 2) - 1 };
                 key += ticks;
-                halvings = u32::max(halvings, 2) - 1;
             } else {
                 halvings += 1;
             }
@@ -316,14 +344,14 @@ impl Search<'_> {
                 }
             }
         }
-        let points = bodies.map(|body| body.points);
-        if points.iter().any(Vec::is_empty) {
+        let vertices = bodies.map(|body| body.vertices);
+        if vertices.iter().any(|of| of.points.is_empty()) {
             return None;
         }
-        let vertices = points.iter().map(Vec::len).sum::<usize>() as u64;
-        let directions = (MOST_COMPARED / (2 * vertices).max(1)).clamp(LEAST_DIRECTIONS, MOST_DIRECTIONS);
+        let count = vertices.iter().map(|of| of.points.len()).sum::<usize>() as u64;
+        let directions = (MOST_COMPARED / (2 * count).max(1)).clamp(LEAST_DIRECTIONS, MOST_DIRECTIONS);
         // Places and rates err by less than half of the error, and what is bent by less than the rest.
         let level = self.scene.pair.level + 2.0 * self.scene.pair.error;
-        Some(Crowd { points, level, directions })
+        Some(Crowd { vertices, level, directions })
     }
 }

@@ -53,7 +53,7 @@ impl<'f> Moving<'f> {
     /// None: the time is over.
     pub(super) fn new(
         scene: &MovingScene<'_>,
-        points: &[Vec<DVec3>; 2],
+        points: [&Vec<DVec3>; 2],
         frame: &'f Frame,
         span: f64,
         clock: &mut Meter,
@@ -61,7 +61,7 @@ impl<'f> Moving<'f> {
         let bodies = [Side::A, Side::B].map(|side| BodyPaths::new(scene, frame, side, span));
         let mut paths = [0, 1].map(|body| Vec::with_capacity(points[body].len()));
         for body in 0..2 {
-            for &point in &points[body] {
+            for &point in points[body] {
                 clock.step().ok()?;
                 paths[body].push(bodies[body].of(point));
             }
@@ -112,6 +112,16 @@ impl<'f> Moving<'f> {
             let ((p, high), (q, low)) = (a[end], b[end]);
             Gap { along: -low - high, line: q - p }
         })
+    }
+
+    /// How far each point of a body reaches at both ends of the span: A's along `n`, B's against it.
+    pub(super) fn reaches(&self, side: Side, n: DVec3) -> Vec<[f64; 2]> {
+        let (body, n) = match side {
+            Side::A => (0, n),
+            Side::B => (1, -n),
+        };
+        let turn = self.bodies[body].turn(n);
+        self.paths[body].iter().map(|path| path.along(n, turn)).collect()
     }
 
     /// The point of a body that reaches the furthest along `n`, and how far, at both ends. What is not a number wins.

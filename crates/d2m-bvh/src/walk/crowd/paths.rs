@@ -2,7 +2,7 @@
 
 use crate::pair::motion::frame::Frame;
 use crate::pair::scene::MovingScene;
-use crate::pair::triangles::separating_axis::place_a;
+use crate::pair::triangles::separating_axis::place_point;
 use d2m_lanes::F64x4;
 use d2m_mesh::margin::UP;
 use glam::DVec3;
@@ -49,7 +49,7 @@ impl<'f> BodyPaths<'f> {
     pub(super) fn of(&self, point: DVec3) -> Path {
         let (now, from_center, drift) = match self.side {
             Side::A => {
-                let now = place_a::<F64x4>(self.frame, &[point; 3])[0];
+                let now = place_point::<F64x4>(self.frame, point);
                 (now, now - self.frame.apart.to_vec(), self.frame.velocity.to_vec())
             }
             Side::B => (point, point, DVec3::ZERO),

@@ -1,31 +1,22 @@
 //! How far what is below boxes reaches along a direction.
 
-use super::paths::{BodyPaths, Side};
-use crate::pair::motion::frame::Frame;
-use crate::pair::scene::{MovingScene, SceneBody};
+use crate::pair::scene::SceneBody;
 use d2m_mesh::Meter;
 use d2m_mesh::node::{Below, WIDTH};
-use glam::DVec3;
 
-/// How far boxes reach along a direction at both ends of a span: A's along `n`, B's against it.
+/// How far boxes of a body reach along a direction at both ends of a span.
 pub(super) struct Reaches<'a> {
     body: &'a SceneBody<'a>,
-    paths: BodyPaths<'a>,
-    along: DVec3,
-    turn: f64,
+    /// Which of the points each vertex of the mesh is, and how far they reach.
+    places: &'a [Option<u32>],
+    of_points: Vec<[f64; 2]>,
     /// Of each box that was measured.
     known: Vec<Option<[f64; 2]>>,
 }
 
 impl<'a> Reaches<'a> {
-    pub(super) fn new(scene: &'a MovingScene<'a>, side: Side, frame: &'a Frame, span: f64, n: DVec3) -> Self {
-        let (body, along) = match side {
-            Side::A => (&scene.a, n),
-            Side::B => (&scene.b, -n),
-        };
-        let known = vec![None; WIDTH * body.tree.nodes().len()];
-        let paths = BodyPaths::new(scene, frame, side, span);
-        Self { body, paths, along, turn: paths.turn(n), known }
+    pub(super) fn new(body: &'a SceneBody<'a>, places: &'a [Option<u32>], of_points: Vec<[f64; 2]>) -> Self {
+        Self { body, places, of_points, known: vec![None; WIDTH * body.tree.nodes().len()] }
     }
 
     /// What [`Self::measure`] found.
@@ -33,7 +24,7 @@ impl<'a> Reaches<'a> {
         self.known[index as usize]
     }
 
-    /// Measures what is below a box, and below all of its boxes; none: the time is over.
+    /// Measures what is below a box, and below all of its boxes; none: the time is over, or of a vertex nothing is known.
     pub(super) fn measure(&mut self, index: u32, clock: &mut Meter) -> Option<[f64; 2]> {
         if let known @ Some(_) = self.known[index as usize] {
             return known;
@@ -42,9 +33,10 @@ impl<'a> Reaches<'a> {
         let most = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [larger(a, c), larger(b, d)];
         let reach = match self.body.tree.nodes()[index as usize / WIDTH].below(index as usize % WIDTH) {
             Below::Triangle(triangle) => {
-                let corners =
-                    self.body.corners(triangle).map(|p| self.paths.of(p).along(self.along, self.turn));
-                corners.into_iter().fold([f64::NEG_INFINITY; 2], most)
+                let corners = self.body.tree.mesh().triangles()[triangle as usize];
+                corners.into_iter().try_fold([f64::NEG_INFINITY; 2], |so_far, vertex| {
+                    Some(most(so_far, self.of_points[self.places[vertex as usize]? as usize]))
+                })?
             }
             Below::Node(node) => {
                 let used = self.body.tree.nodes()[node as usize].used.min(WIDTH as u32);

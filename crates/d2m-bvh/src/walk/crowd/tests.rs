@@ -6,7 +6,7 @@ use crate::pair::scene::{MovingScene, MovingTree};
 use crate::walk::scratch::Scratch;
 use crate::walk::state::SubWindow;
 use crate::{Budget, MeshTree, QueryOptions, TriMesh, Window};
-use d2m_lanes::F64x4;
+use d2m_lanes::{F64x4, Portable};
 use d2m_mesh::Stop;
 use d2m_motion::ConstantTwist;
 use d2m_testing::{Draw, KnuthRandom, Surface};
@@ -23,12 +23,16 @@ const fn moving(tree: &MeshTree, twist: ConstantTwist) -> MovingTree<'_> {
 }
 
 /// All vertices of both bodies.
-fn points(scene: &MovingScene<'_>) -> [Vec<DVec3>; 2] {
+fn vertices(scene: &MovingScene<'_>) -> [Vertices; 2] {
     [&scene.a, &scene.b].map(|body| {
         let mut group = Group::new(body);
         group.add(0, 100, &mut Meter::unlimited()).unwrap();
-        group.points
+        group.vertices
     })
+}
+
+fn points(scene: &MovingScene<'_>) -> [Vec<DVec3>; 2] {
+    vertices(scene).map(|of| of.points)
 }
 
 /// Bodies that a plane parts are further apart than the level at all times of the span; not if the gap is measured
@@ -54,16 +58,18 @@ fn what_a_plane_parts_stays_apart() {
         let frame = motion.frame::<F64x4>(0.0);
         let span = scene.longest * (0.6 + 0.4 * random.signed());
         let points = points(&scene);
-        let moving = Moving::new(&scene, &points, &frame, span, &mut Meter::unlimited()).unwrap();
+        let moving = Moving::new(&scene, points.each_ref(), &frame, span, &mut Meter::unlimited()).unwrap();
         let n = moving.between().normalize();
-        let mut straight = Moving::new(&scene, &points, &frame, span, &mut Meter::unlimited()).unwrap();
+        let mut straight =
+            Moving::new(&scene, points.each_ref(), &frame, span, &mut Meter::unlimited()).unwrap();
         straight.paths.iter_mut().flatten().for_each(|path| path.bend = 0.0);
         let [gaps, straight_gaps] = [&moving, &straight].map(|moving| moving.gaps(n).map(|gap| gap.along));
         let world = motion.rotation_b(0.0).transform(n);
         let gap_at = |time: f64| {
             let frame = motion.frame::<F64x4>(time);
             let n = motion.rotation_b(time).transposed::<F64x4>().transform(world);
-            Moving::new(&scene, &points, &frame, 0.0, &mut Meter::unlimited()).unwrap().gaps(n)[0].along
+            Moving::new(&scene, points.each_ref(), &frame, 0.0, &mut Meter::unlimited()).unwrap().gaps(n)[0]
+                .along
         };
         let least = (0..=8).map(|k| gap_at(span * f64::from(k) / 8.0)).fold(f64::INFINITY, f64::min);
         // The largest levels that the plane may prove: parts of the gaps at both ends.
@@ -120,10 +126,11 @@ fn boxes_reach_as_far_as_their_vertices() {
             .unwrap();
     let frame: Frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
     for n in [DVec3::X, random.vector().normalize(), random.vector().normalize()] {
-        let points = points(&scene);
-        let moving = Moving::new(&scene, &points, &frame, 0.25, &mut Meter::unlimited()).unwrap();
-        let [mut reach_a, mut reach_b] =
-            [Side::A, Side::B].map(|side| Reaches::new(&scene, side, &frame, 0.25, n));
+        let [of_a, of_b] = vertices(&scene);
+        let points = [&of_a.points, &of_b.points];
+        let moving = Moving::new(&scene, points, &frame, 0.25, &mut Meter::unlimited()).unwrap();
+        let mut reach_a = Reaches::new(&scene.a, &of_a.places, moving.reaches(Side::A, n));
+        let mut reach_b = Reaches::new(&scene.b, &of_b.places, moving.reaches(Side::B, n));
         let (high, low) = (
             reach_a.measure(0, &mut Meter::unlimited()).unwrap(),
             reach_b.measure(0, &mut Meter::unlimited()).unwrap(),
@@ -151,8 +158,10 @@ fn preparations_end_with_the_time() {
     let points = [vertices.clone(), vertices];
     let frame = scene.relative_motion(0.0).frame::<F64x4>(0.0);
     let over = || Meter::until(Stop::new(&Budget::UNLIMITED.with_wall_clock(Duration::ZERO)));
-    assert!(Moving::new(&scene, &points, &frame, 0.25, &mut over()).is_none());
-    let mut reaches = Reaches::new(&scene, Side::A, &frame, 0.25, DVec3::X);
+    assert!(Moving::new(&scene, points.each_ref(), &frame, 0.25, &mut over()).is_none());
+    let moving = Moving::new(&scene, points.each_ref(), &frame, 0.25, &mut Meter::unlimited()).unwrap();
+    let places: Vec<_> = (0..3000).map(Some).collect();
+    let mut reaches = Reaches::new(&scene.a, &places, moving.reaches(Side::A, DVec3::X));
     assert_eq!(reaches.measure(0, &mut over()), None);
     assert!(reaches.measure(0, &mut Meter::unlimited()).is_some());
 }
@@ -174,6 +183,38 @@ fn a_crowd_costs_no_more_than_the_search_before() {
         search.scratch.counts.node_tests = work;
         let crowd = search.crowd(&state, &[], &mut Meter::unlimited());
         assert_eq!(crowd.is_some(), is_enough, "{work}");
-        assert!(crowd.is_none_or(|crowd| crowd.points.iter().all(|points| points.len() == vertices.len())));
+        assert!(crowd.is_none_or(|crowd| crowd.points().iter().all(|points| points.len() == vertices.len())));
     }
+}
+
+/// Two soups in one place, which no plane parts: that is found by the shortest time alone, and the next attempt waits until the search has
+/// done as much as all of this once more.
+#[test]
+fn a_crowd_that_no_plane_parts_costs_one_attempt() {
+    let mut random = KnuthRandom(43);
+    let vertices: Vec<_> = (0..300).map(|_| random.vector()).collect();
+    let tree = MeshTree::new(Surface::soup(vertices).into_mesh(TriMesh::try_new));
+    let (rest, options) = (ConstantTwist::REST, QueryOptions::default());
+    let scene =
+        MovingScene::try_new(moving(&tree, rest), moving(&tree, rest), Window::UNIT, &options).unwrap();
+    let mut scratch = Scratch::new();
+    let mut search = Search::new(&scene, &options, &mut scratch);
+    let mut state = search.begin_window(SubWindow { start: 0.0, end: 1.0 });
+    search.scratch.queue.push(state.expander.root());
+    search.scratch.counts.node_tests = 1000;
+    let crowd = search.crowd(&state, &[], &mut Meter::unlimited()).unwrap();
+    let whole = state.limit;
+    let mut cost_until = |limit: u32| {
+        state.limit = limit;
+        let before = search.work();
+        let clock = &mut Meter::unlimited();
+        assert_eq!(search.advance_together::<Portable>(&state, 0, (&crowd, u64::MAX / 2), clock), 0);
+        search.work() - before
+    };
+    // Of one step there is one length of time.
+    let (one, all) = (cost_until(1), cost_until(whole));
+    assert!(one > 0 && all <= 2 * one, "{one} {all}");
+    let mut patience = Patience::new(0, 1);
+    patience.rest_after(&search, 1000, Planes::PartNothing);
+    assert_eq!(patience.rest_until, 2 * search.work());
 }
