@@ -219,3 +219,43 @@ fn a_clearance_between_two_numbers_is_no_more_than_what_is_left_at_its_end() {
         }
     }
 }
+
+/// Cubes that meet between two numbers, and are further apart at the later one: a span of contact begins and ends within the resolution of a time
+/// at which they are near.
+#[test]
+fn a_contact_between_two_numbers_is_one_within_the_resolution() {
+    let cube = cube();
+    let wall = ConstantTwist::REST.with_position(DVec3::X * 5.0);
+    let places = [4.0 - 2e-10, 6.9, 5.9, 5.0, 5.0];
+    let gap = |k: f64| {
+        let piece = k.clamp(0.0, 3.0) as usize;
+        let place = places[piece] + (k - piece as f64) * (places[piece + 1] - places[piece]);
+        (place - 5.0).abs() - 1.0
+    };
+    for [begin, next, _] in times() {
+        let unit = next - begin;
+        let at = |k: u32| begin + f64::from(k) * unit;
+        let pieces = places.windows(2).map(|w| vec![w[0], (w[1] - w[0]) / unit]).collect();
+        let sliding = slide(JointValue::try_pieces((0..=4).map(at).collect(), pieces).unwrap());
+        let composed = Composed::new(ConstantTwist::REST, sliding.clone());
+        for motion in [&sliding as &(dyn RigidMotion + Send), &composed] {
+            for resolution in [0.125, 0.5, 1.0] {
+                let bodies = [Moving::new(&cube, motion), Moving::new(&cube, &wall)];
+                for [a, b] in [bodies, [bodies[1], bodies[0]]] {
+                    let window = Window::try_new(begin, at(4)).unwrap();
+                    let spans =
+                        contact_spans(a, b, window, &QueryOptions::default(), Some(resolution * unit))
+                            .unwrap();
+                    let contacts = spans.iter().filter(|span| span.status == SpanStatus::Contact);
+                    for time in contacts.flat_map(|span| [span.from, span.to]) {
+                        let around =
+                            (-64..=64).map(|j| (time - begin) / unit + resolution * f64::from(j) / 64.0);
+                        let least = around.map(|k| gap(k.clamp(0.0, 4.0))).fold(f64::INFINITY, f64::min);
+                        assert!(least < 1e-9, "{begin}, {resolution}: {least}, {spans:?}");
+                    }
+                    assert_eq!(spans[spans.len() - 1].status, SpanStatus::Contact, "{spans:?}");
+                }
+            }
+        }
+    }
+}

@@ -164,7 +164,7 @@ struct Search<'a> {
     tolerance: f64,
     spans: Vec<ContactSpan>,
     now: f64,
-    /// The last time at which the bodies were proven within the level.
+    /// The last time at which the bodies were proven within the level, or the start of a bracket with such a time.
     within: Option<f64>,
 }
 
@@ -268,13 +268,21 @@ impl Search<'_> {
         let (end, resolution) = (self.walk.window.end(), self.walk.resolution);
         let mut first = contact.time_lo;
         if contact.evidence > Evidence::Early {
-            let met = contact.time_hi;
-            // The bracket proves it, whether or not a single time does, unless that is a tolerance beyond the level's.
+            let [lo, hi] = [contact.time_lo, contact.time_hi];
+            // The bracket proves it of one of its times, whether or not a given one does, unless that is a tolerance beyond the level's.
             let proves = contact.evidence == Evidence::Crossing || contact.tolerance <= self.tolerance;
-            if self.walk.is_within(met) || proves {
-                return Ok(self.met_at(met));
+            let is_single = lo == hi && proves;
+            if self.walk.is_within(hi) || is_single {
+                return Ok(self.met_at(hi));
             }
-            first = met;
+            if self.walk.is_within(lo) {
+                return Ok(self.met_at(lo));
+            }
+            if proves && hi - lo <= resolution {
+                self.push(hi, SpanStatus::Contact);
+                self.within = Some(lo);
+            }
+            first = hi;
         }
         let least = match from {
             Beginning::Above if first <= self.now => 1.0,
