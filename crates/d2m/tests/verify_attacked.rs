@@ -1,12 +1,12 @@
 //! Lies that were proven: found by an adversary. Each is an edit of an honest answer, which is proven.
 #![cfg(feature = "verify")]
 
-use d2m::bvh::ClearanceStatus;
+use d2m::bvh::{ClearanceStatus, TimeBracket};
 use d2m::verify::{Verdict, Verifier};
 use d2m::{
-    Arm, Budget, Chain, Clearance, ClearanceOptions, ConstantTwist, Contact, ContactSpan, Joint, JointKind,
-    JointValue, Keyframes, MeshTree, Moving, Pose, QueryOptions, RigidMotion, Span, SpanStatus, StartState,
-    TimeOfContact, TriMesh, Window, clearance, contact_spans, departure, time_of_contact,
+    Arm, Budget, Chain, Clearance, ClearanceOptions, ConstantTwist, Contact, ContactSpan, Departure, Joint,
+    JointKind, JointValue, Keyframes, MeshTree, Moving, Pose, QueryOptions, RigidMotion, Span, SpanStatus,
+    StartState, TimeOfContact, TriMesh, Window, clearance, contact_spans, departure, time_of_contact,
 };
 use glam::{DAffine3, DQuat, DVec3};
 
@@ -303,4 +303,38 @@ fn a_tolerance_that_enclosures_raise_refutes_no_answer() {
         }
     }
     assert!(raised > 0);
+}
+
+/// Bodies that begin apart, or one in the other: an answer that lets go of what they meet later, or of what they touch, is none.
+#[test]
+fn only_what_is_in_contact_at_the_start_leaves() {
+    let tree = tetrahedron();
+    let options = QueryOptions::default();
+    let (passing, parting) = (along_x(-3.0, 6.0), along_x(0.5, 6.0));
+    for motion in [&passing, &parting] {
+        let pair = Pair { tree: &tree, motion };
+        let [a, b] = pair.bodies();
+        let is_proven = |answer: &Departure| {
+            let verdict = pair.verifier().departure(&[a, b], Window::UNIT, &options, answer, STEPS);
+            matches!(verdict, Verdict::Verified { .. })
+        };
+        let honest = departure(a, b, Window::UNIT, &options).unwrap();
+        assert!(is_proven(&honest), "{honest:?}");
+        let begins_apart = honest.start == StartState::Apart;
+        assert_eq!(begins_apart, honest.answer.contact().is_some(), "{honest:?}");
+        for [lo, hi] in [[0.9, 0.9], [0.0, 0.9], [0.0, 0.0]] {
+            let mut lie = honest;
+            (lie.start, lie.answer) = (StartState::Apart, TimeOfContact::Separated);
+            lie.left = Some(TimeBracket { lo, hi });
+            assert!(!is_proven(&lie), "{lie:?}");
+        }
+        // The contact at the start, of bodies that are said to begin apart.
+        let mut apart = honest;
+        (apart.start, apart.left) = (StartState::Apart, Some(TimeBracket { lo: 0.0, hi: 0.0 }));
+        apart.answer = time_of_contact(a, b, Window::UNIT, &options).unwrap();
+        assert_eq!(is_proven(&apart), begins_apart, "{apart:?}");
+        let mut held = honest;
+        held.start = StartState::Contained;
+        assert!(!is_proven(&held), "{held:?}");
+    }
 }

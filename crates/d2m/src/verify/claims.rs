@@ -129,8 +129,10 @@ pub fn departure_claim(
         triangles: None,
     };
     let mut claims = Vec::new();
-    if answer.start != StartState::Apart {
-        claims.push(within(window.start()));
+    match answer.start {
+        StartState::Apart => {}
+        StartState::Contained => claims.push(Claim::Held { time: window.start() }),
+        _ => claims.push(within(window.start())),
     }
     let Some(left) = answer.left else {
         claims.push(claim(bodies, window, options, &answer.answer)?);
@@ -142,7 +144,13 @@ pub fn departure_claim(
     if !(window.start() <= left.lo && left.lo <= left.hi && left.hi <= window.end()) {
         return Err(Reason::Malformed);
     }
-    if answer.start != StartState::Apart {
+    if answer.start == StartState::Apart {
+        // Bodies that begin apart leave nothing: what is said of the rest is said of all of the window.
+        if [left.lo, left.hi] != [window.start(); 2] {
+            return Err(Reason::Malformed);
+        }
+        claims.push(Claim::Clear { span: at(window.start()), distance: options.min_separation });
+    } else {
         claims.push(within(left.lo));
         // Further apart than s + δ, with δ at least as it was asked for.
         claims.push(Claim::Clear { span: at(left.hi), distance: options.min_separation + scale.asked });

@@ -12,7 +12,9 @@
 //! | … overlapping at the start | within δ of each other then (`Crossing`: they share a point) |
 //! | … contained | a body holds a part of the other at the start |
 //! | … with evidence | within s (`Crossing`) or s + δ (`Near`) at some time of the bracket |
-//! | [`Departure`] | within s + δ at `left.lo`, further apart at `left.hi`, and its answer from there on |
+//! | [`Departure`] | within s + δ at the start and at `left.lo`, further apart at `left.hi`, and its answer from there on |
+//! | … contained at the start | a body holds a part of the other then |
+//! | … apart at the start | further apart than s then, where the answer begins |
 //! | [`Clearance`] | nowhere below `lower`, at most `upper` at `time`, and no wider than was asked for; bodies that meet are as near at `time` as at a time of contact |
 //! | [`ContactSpan`]s | clear spans are clear; spans of contact begin and end within the resolution of a time within s + δ, and hold one in each part as long as the resolution |
 //!
