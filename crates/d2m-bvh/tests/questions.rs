@@ -1,8 +1,9 @@
 //! Clearance, spans and departures against dense sampling by other code: plain poses and the distances of all pairs of triangles.
 
 use d2m_bvh::{
-    Budget, ClearanceOptions, ClearanceStatus, MeshTree, Moving, QueryError, QueryOptions, Solid, SpanStatus,
-    Start, StartState, TimeOfContact, TriMesh, Window, clearance, contact_spans, departure, time_of_contact,
+    Budget, ClearanceOptions, ClearanceStatus, MeshTree, Mode, Moving, QueryError, QueryOptions, Solid,
+    SpanStatus, Start, StartState, TimeOfContact, TriMesh, Window, clearance, contact_spans, departure,
+    time_of_contact,
 };
 use d2m_feature::triangle_distance;
 use d2m_motion::{
@@ -299,6 +300,30 @@ fn spans_hold_against_dense_sampling() {
 }
 
 /// Lifted from a table at a known time, carried along it, and never lifted.
+/// Which contact there is decides nothing of spans, though the mode that only asks for one finds others first.
+#[test]
+fn spans_of_the_mode_that_only_asks_for_a_contact_are_the_same() {
+    let mut random = KnuthRandom(58);
+    let plate = cuboid(DVec3::new(2.0, 0.1, 2.0));
+    let bar = cuboid(DVec3::new(0.1, 0.1, 1.0));
+    let (mut met, mut later) = (0, 0);
+    for _ in 0..24 {
+        let motion = random_keyframes(&mut random);
+        let bodies = [Moving::new(&plate, &ConstantTwist::REST), Moving::new(&bar, &motion)];
+        for [a, b] in [bodies, [bodies[1], bodies[0]]] {
+            let [accurate, exists] =
+                [Mode::Accurate, Mode::Exists].map(|mode| QueryOptions::default().with_mode(mode));
+            let spans = |options| contact_spans(a, b, Window::UNIT, options, Some(1e-3)).unwrap();
+            assert_eq!(spans(&accurate), spans(&exists));
+            let time =
+                |options| time_of_contact(a, b, Window::UNIT, options).unwrap().contact().map(|c| c.time_lo);
+            met += u32::from(time(&accurate).is_some());
+            later += u32::from(time(&exists) > time(&accurate));
+        }
+    }
+    assert!(met > 10 && later > 0, "{met}, {later}");
+}
+
 #[test]
 fn what_holds_at_the_start_is_let_go() {
     let table = cuboid(DVec3::new(4.0, 4.0, 0.5));
