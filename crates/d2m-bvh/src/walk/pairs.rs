@@ -112,7 +112,9 @@ impl Search<'_> {
             }
         }
         let start = state.motion.start;
-        let mut frame = state.frame;
+        // Not copied: most pairs end with the frame of all.
+        let mut own;
+        let mut frame = &state.frame;
         let mut steps = 0u32;
         loop {
             steps += 1;
@@ -129,7 +131,7 @@ impl Search<'_> {
             let enough = state.limit_offset - frame.offset;
             let looks = self.scratch.counts.triangle_looks;
             let order = effort::bound_order(looks, steps);
-            match separating_axis_test::<L::Doubles>(&frame, [&a, &b], &self.scene.pair, enough, order) {
+            match separating_axis_test::<L::Doubles>(frame, [&a, &b], &self.scene.pair, enough, order) {
                 Evaluation::ClearFor(time) => {
                     known = known.max(frame.offset + time);
                     #[cfg(feature = "audit")]
@@ -154,9 +156,9 @@ impl Search<'_> {
                     // Near at the time of the frame, which may be before what the boxes proved: then it is evaluated again there.
                     if known <= frame.offset {
                         if known < state.limit_offset {
+                            let reversed = frame.reversed::<L::Doubles>();
                             state.find(Found { start, offset: known, triangles, crossing });
-                            state.behind =
-                                BackwardCertificate { reversed: frame.reversed::<L::Doubles>(), direction };
+                            state.behind = BackwardCertificate { reversed, direction };
                             if self.limits.mode == Mode::Exists {
                                 state.end();
                             }
@@ -166,12 +168,13 @@ impl Search<'_> {
                 }
             }
             if known > frame.offset {
-                frame = state.motion.frame::<L::Doubles>(known);
+                own = state.motion.frame::<L::Doubles>(known);
+                frame = &own;
             } else {
                 // The time left is below the resolution of time itself: no time between would show more.
+                let reversed = frame.reversed::<L::Doubles>();
                 state.find(Found { start, offset: known, triangles, crossing: false });
-                state.behind =
-                    BackwardCertificate { reversed: frame.reversed::<L::Doubles>(), ..state.behind };
+                state.behind.reversed = reversed;
                 return;
             }
         }

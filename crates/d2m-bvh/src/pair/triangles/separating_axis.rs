@@ -61,17 +61,13 @@ enum Low {
 }
 
 /// The triangles of a pair in the frame of B's tree, and how they move.
-struct Placed {
+struct Placed<'p> {
     a: [DVec3; 3],
-    b: [DVec3; 3],
-    /// Velocity of the center of A's tree against that of B's.
-    velocity: DVec3,
-    offset: DVec3,
-    omega_a: DVec3,
-    omega_b: DVec3,
-    /// From the reference points to the centers of the trees.
-    arm_a: DVec3,
-    arm_b: DVec3,
+    b: &'p [DVec3; 3],
+    /// How the bodies move, in the frame of B's tree.
+    frame: &'p Frame,
+    /// From the reference points to the centers of the trees, body axes.
+    arms: &'p [DVec3; 2],
     /// No later time matters, counted from the frame.
     enough: f64,
     order: BoundOrder,
@@ -104,7 +100,7 @@ pub(crate) fn separating_axis_test<D: Doubles>(
     order: BoundOrder,
 ) -> Evaluation {
     let placed = Placed::new::<D>(frame, triangles, scale, enough, order);
-    let gap = widest_gap::<D>(&placed.a, &placed.b);
+    let gap = widest_gap::<D>(&placed.a, placed.b);
     let mut direction = gap.direction;
     let (apart, far) = (
         gap.exceeds(scale.level + scale.error),
@@ -116,9 +112,9 @@ pub(crate) fn separating_axis_test<D: Doubles>(
     // the distance.
     for attempt in if apart { 0 } else { 2 }..3 {
         if attempt == 1 {
-            direction = widest_normal(&placed.a, &placed.b);
+            direction = widest_normal(&placed.a, placed.b);
         } else if attempt == 2 {
-            let near = closest::<D>(&placed.a, &placed.b);
+            let near = closest::<D>(&placed.a, placed.b);
             direction = near.direction;
             touching = near.distance_squared <= scale.stop * scale.stop;
             if order == BoundOrder::Turning {
@@ -139,7 +135,7 @@ pub(crate) fn separating_axis_test<D: Doubles>(
         }
     }
     if order == BoundOrder::Turning && !touching && best < VERY_SHORT * enough {
-        best = placed.clear_while_turning(middle_direction(&placed.a, &placed.b), scale, best);
+        best = placed.clear_while_turning(middle_direction(&placed.a, placed.b), scale, best);
     }
     if !touching && best == 0.0 {
         best = placed.clear_along_refined::<D>(scale);
@@ -175,7 +171,7 @@ pub(crate) fn apart_since<D: Doubles>(
     let mut direction = contact.direction;
     for attempt in 0..2 {
         if attempt == 1 {
-            direction = widest_gap::<D>(&placed.a, &placed.b).direction;
+            direction = widest_gap::<D>(&placed.a, placed.b).direction;
         }
         if placed.clear_for::<D>(direction, scale, scale.level, 0.0) >= span {
             return true;
@@ -184,27 +180,29 @@ pub(crate) fn apart_since<D: Doubles>(
     false
 }
 
-impl Placed {
+impl<'p> Placed<'p> {
     #[inline(always)]
     fn new<D: Doubles>(
-        frame: &Frame,
-        [a, b]: [&[DVec3; 3]; 2],
-        scale: &PairScale,
+        frame: &'p Frame,
+        [a, b]: [&'p [DVec3; 3]; 2],
+        scale: &'p PairScale,
         enough: f64,
         order: BoundOrder,
     ) -> Self {
-        Self {
-            a: place_a::<D>(frame, a),
-            b: *b,
-            velocity: frame.velocity.to_vec(),
-            offset: frame.apart.to_vec(),
-            omega_a: frame.omega_a.to_vec(),
-            omega_b: frame.omega_b.to_vec(),
-            arm_a: frame.rotation.times::<D>(scale.arms[0]).store().to_vec(),
-            arm_b: scale.arms[1],
-            enough,
-            order,
-        }
+        Self { a: place_a::<D>(frame, a), b, frame, arms: &scale.arms, enough, order }
+    }
+
+    /// The angular velocities.
+    #[inline(always)]
+    fn omegas(&self) -> [DVec3; 2] {
+        [self.frame.omega_a.to_vec(), self.frame.omega_b.to_vec()]
+    }
+
+    /// The arms.
+    #[inline(always)]
+    fn arms(&self) -> [DVec3; 2] {
+        let [of_a, of_b] = *self.arms;
+        [self.frame.rotation.transform(of_a), of_b]
     }
 
     /// The larger of `known` and the time for which the direction keeps the pair further apart than `level`.
@@ -224,8 +222,9 @@ impl Placed {
         if !separated {
             return known;
         }
-        let (turn_a, turn_b) = (n.cross(self.omega_a), n.cross(self.omega_b));
-        let drift = n.dot(self.velocity) - turn_a.dot(self.offset);
+        let [omega_a, omega_b] = self.omegas();
+        let (turn_a, turn_b) = (n.cross(omega_a), n.cross(omega_b));
+        let drift = n.dot(self.frame.velocity.to_vec()) - turn_a.dot(self.frame.apart.to_vec());
         let (ra, rb) = (a.dot(turn_a) + D::splat(drift), b.dot(turn_b));
         let s = if self.order == BoundOrder::Second {
             let (of_a, of_b) = (Lines { at: pa, rate: ra }, Lines { at: pb, rate: rb });
@@ -245,7 +244,7 @@ impl Placed {
     #[inline(never)]
     fn clear_along_refined<D: Doubles>(&self, scale: &PairScale) -> f64 {
         let mut best = 0.0;
-        for direction in refined_directions(&self.a, &self.b) {
+        for direction in refined_directions(&self.a, self.b) {
             best = self.clear_for::<D>(direction, scale, scale.target(), best);
         }
         best
@@ -284,19 +283,21 @@ impl Placed {
 
     /// The triangles as they turn with their bodies.
     fn turning_triangles(&self) -> [TurningTriangle; 2] {
+        let ([omega_a, omega_b], [arm_a, arm_b]) = (self.omegas(), self.arms());
+        let center = self.frame.apart.to_vec();
         let a = TurningTriangle {
-            corners: self.a.map(|corner| corner - self.offset),
-            center: self.offset,
-            velocity: self.velocity,
-            omega: self.omega_a,
-            arm: self.arm_a,
+            corners: self.a.map(|corner| corner - center),
+            center,
+            velocity: self.frame.velocity.to_vec(),
+            omega: omega_a,
+            arm: arm_a,
         };
         let b = TurningTriangle {
-            corners: self.b,
+            corners: *self.b,
             center: DVec3::ZERO,
             velocity: DVec3::ZERO,
-            omega: self.omega_b,
-            arm: self.arm_b,
+            omega: omega_b,
+            arm: arm_b,
         };
         [a, b]
     }
@@ -314,8 +315,9 @@ impl Placed {
     ) -> f64 {
         let (Lines { at: pa, rate: ra }, Lines { at: pb, rate: rb }) = (of_a, of_b);
         let a_is_low = low == Low::A;
-        let (a, b, length) = (&self.a, &self.b, n.length());
-        let (turn_a, turn_b) = (n.cross(self.omega_a), n.cross(self.omega_b));
+        let (a, b, length) = (&self.a, self.b, n.length());
+        let [omega_a, omega_b] = self.omegas();
+        let (turn_a, turn_b) = (n.cross(omega_a), n.cross(omega_b));
         // |n·(ω × (ω × e))| = |(n × ω)·(ω × e)| ≤ |n × ω||ω||e|, and the same times |ω| for the next derivative.
         let [bound_a, bound_b] = self.centripetal_along(scale, turn_a, turn_b);
         let m = (bound_a + bound_b).min(scale.acceleration * length) * UP;
@@ -334,10 +336,11 @@ impl Placed {
         if s >= self.enough || is_even {
             return s;
         }
-        let jerk = (bound_a * self.omega_a.length() + bound_b * self.omega_b.length()) * UP;
-        let bend_a = self.omega_a * self.omega_a.dot(n) - n * self.omega_a.length_squared();
-        let bend_b = self.omega_b * self.omega_b.dot(n) - n * self.omega_b.length_squared();
-        let (arm_a, arm_b) = (self.arm_a - self.offset, self.arm_b);
+        let jerk = (bound_a * omega_a.length() + bound_b * omega_b.length()) * UP;
+        let bend_a = omega_a * omega_a.dot(n) - n * omega_a.length_squared();
+        let bend_b = omega_b * omega_b.dot(n) - n * omega_b.length_squared();
+        let [arm_a, arm_b] = self.arms();
+        let arm_a = arm_a - self.frame.apart.to_vec();
         let aa = [bend_a.dot(a[0] + arm_a), bend_a.dot(a[1] + arm_a), bend_a.dot(a[2] + arm_a)];
         let ab = [bend_b.dot(b[0] + arm_b), bend_b.dot(b[1] + arm_b), bend_b.dot(b[2] + arm_b)];
         let (of_a, of_b) = (Jets { at: pa, rate: ra, bend: aa }, Jets { at: pb, rate: rb, bend: ab });
@@ -351,11 +354,12 @@ impl Placed {
     /// |n × ω||ω|ρ of both bodies.
     #[inline(always)]
     fn centripetal_along(&self, scale: &PairScale, turn_a: DVec3, turn_b: DVec3) -> [f64; 2] {
+        let [omega_a, omega_b] = self.omegas();
         let one = |centripetal: f64, turn: DVec3, omega: DVec3| {
             let square = omega.length_squared();
             if square > 0.0 { centripetal * (turn.length_squared() / square).sqrt() } else { 0.0 }
         };
-        [one(scale.centripetal[0], turn_a, self.omega_a), one(scale.centripetal[1], turn_b, self.omega_b)]
+        [one(scale.centripetal[0], turn_a, omega_a), one(scale.centripetal[1], turn_b, omega_b)]
     }
 }
 
