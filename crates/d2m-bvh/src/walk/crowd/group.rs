@@ -1,5 +1,6 @@
 //! The vertices below some boxes of a body.
 
+use super::places::Places;
 use crate::pair::scene::SceneBody;
 use d2m_mesh::Meter;
 use d2m_mesh::node::{Below, WIDTH};
@@ -18,13 +19,13 @@ pub(super) struct Vertices {
     /// Relative to the tree's center.
     pub(super) points: Vec<DVec3>,
     /// Which of the points each vertex of the mesh is; none that was not added.
-    pub(super) places: Vec<Option<u32>>,
+    pub(super) places: Places,
 }
 
 impl<'a> Group<'a> {
     pub(super) fn new(body: &'a SceneBody<'a>) -> Self {
         let seen = vec![false; WIDTH * body.tree.nodes().len()];
-        let places = vec![None; body.tree.mesh().vertices().len()];
+        let places = Places::none_of(body.tree.mesh().vertices().len());
         Self { body, seen, vertices: Vertices { points: Vec::new(), places } }
     }
 
@@ -40,10 +41,10 @@ impl<'a> Group<'a> {
             match self.body.tree.nodes()[index / WIDTH].below(index % WIDTH) {
                 Below::Triangle(triangle) => {
                     for vertex in self.body.tree.mesh().triangles()[triangle as usize] {
-                        let place = &mut places[vertex as usize];
-                        if place.is_none() {
-                            *place = Some(points.len() as u32);
-                            points.push(self.body.place(self.body.tree.mesh().vertices()[vertex as usize]));
+                        let vertex = vertex as usize;
+                        if places.get(vertex).is_none() {
+                            points.push(self.body.place(self.body.tree.mesh().vertices()[vertex]));
+                            places.set_last(vertex, points.len());
                         }
                     }
                 }

@@ -15,6 +15,7 @@
 mod group;
 mod moving;
 mod paths;
+mod places;
 mod reaches;
 #[cfg(test)]
 mod tests;

@@ -1,5 +1,6 @@
 //! How far what is below boxes reaches along a direction.
 
+use super::places::Places;
 use crate::pair::scene::SceneBody;
 use d2m_mesh::Meter;
 use d2m_mesh::node::{Below, WIDTH};
@@ -8,25 +9,27 @@ use d2m_mesh::node::{Below, WIDTH};
 pub(super) struct Reaches<'a> {
     body: &'a SceneBody<'a>,
     /// Which of the points each vertex of the mesh is, and how far they reach.
-    places: &'a [Option<u32>],
+    places: &'a Places,
     of_points: Vec<[f64; 2]>,
-    /// Of each box that was measured.
-    known: Vec<Option<[f64; 2]>>,
+    /// Of the boxes that were measured.
+    known: Places,
+    of_boxes: Vec<[f64; 2]>,
 }
 
 impl<'a> Reaches<'a> {
-    pub(super) fn new(body: &'a SceneBody<'a>, places: &'a [Option<u32>], of_points: Vec<[f64; 2]>) -> Self {
-        Self { body, places, of_points, known: vec![None; WIDTH * body.tree.nodes().len()] }
+    pub(super) fn new(body: &'a SceneBody<'a>, places: &'a Places, of_points: Vec<[f64; 2]>) -> Self {
+        let known = Places::none_of(WIDTH * body.tree.nodes().len());
+        Self { body, places, of_points, known, of_boxes: Vec::new() }
     }
 
     /// What [`Self::measure`] found.
     pub(super) fn of(&self, index: u32) -> Option<[f64; 2]> {
-        self.known[index as usize]
+        Some(self.of_boxes[self.known.get(index as usize)?])
     }
 
     /// Measures what is below a box, and below all of its boxes; none: the time is over, or of a vertex nothing is known.
     pub(super) fn measure(&mut self, index: u32, clock: &mut Meter) -> Option<[f64; 2]> {
-        if let known @ Some(_) = self.known[index as usize] {
+        if let known @ Some(_) = self.of(index) {
             return known;
         }
         clock.step().ok()?;
@@ -35,7 +38,7 @@ impl<'a> Reaches<'a> {
             Below::Triangle(triangle) => {
                 let corners = self.body.tree.mesh().triangles()[triangle as usize];
                 corners.into_iter().try_fold([f64::NEG_INFINITY; 2], |so_far, vertex| {
-                    Some(most(so_far, self.of_points[self.places[vertex as usize]? as usize]))
+                    Some(most(so_far, self.of_points[self.places.get(vertex as usize)?]))
                 })?
             }
             Below::Node(node) => {
@@ -45,7 +48,8 @@ impl<'a> Reaches<'a> {
                 })?
             }
         };
-        self.known[index as usize] = Some(reach);
+        self.of_boxes.push(reach);
+        self.known.set_last(index as usize, self.of_boxes.len());
         Some(reach)
     }
 }

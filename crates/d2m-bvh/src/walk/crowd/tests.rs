@@ -1,5 +1,6 @@
 //! Planes hold as long as they are said to, and boxes reach as far as what they hold.
 
+use super::places::Places;
 use super::*;
 use crate::pair::motion::frame::Frame;
 use crate::pair::scene::{MovingScene, MovingTree};
@@ -160,7 +161,8 @@ fn preparations_end_with_the_time() {
     let over = || Meter::until(Stop::new(&Budget::UNLIMITED.with_wall_clock(Duration::ZERO)));
     assert!(Moving::new(&scene, points.each_ref(), &frame, 0.25, &mut over()).is_none());
     let moving = Moving::new(&scene, points.each_ref(), &frame, 0.25, &mut Meter::unlimited()).unwrap();
-    let places: Vec<_> = (0..3000).map(Some).collect();
+    let mut places = Places::none_of(3000);
+    (0..3000).for_each(|vertex| places.set_last(vertex, vertex + 1));
     let mut reaches = Reaches::new(&scene.a, &places, moving.reaches(Side::A, DVec3::X));
     assert_eq!(reaches.measure(0, &mut over()), None);
     assert!(reaches.measure(0, &mut Meter::unlimited()).is_some());
