@@ -234,10 +234,13 @@ fn one_inside_the_other() {
             for (solids, is_held) in
                 [([Solid::Filled, Solid::Surface], true), ([Solid::Surface, Solid::Filled], false)]
             {
-                assert_eq!(collide(a, b, solids).unwrap(), is_held);
-                let within = collide_within(a, b, solids, &Budget::UNLIMITED).unwrap();
-                let bounds = bound_distance(a, b, solids, &Budget::UNLIMITED).unwrap();
-                assert_eq!((within, bounds.lower == 0.0), (Some(is_held), is_held));
+                let [of_a, of_b] = solids;
+                for (a, b, solids) in [(a, b, solids), (b, a, [of_b, of_a])] {
+                    assert_eq!(collide(a, b, solids).unwrap(), is_held);
+                    let within = collide_within(a, b, solids, &Budget::UNLIMITED).unwrap();
+                    let bounds = bound_distance(a, b, solids, &Budget::UNLIMITED).unwrap();
+                    assert_eq!((within, bounds.lower == 0.0), (Some(is_held), is_held));
+                }
             }
             let around = as_these([Solid::Surface, Solid::Filled]);
             assert_eq!(around, distance(a, b, Solid::Surface).unwrap());

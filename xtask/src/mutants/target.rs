@@ -46,7 +46,9 @@ impl Mutant {
         let path = home.join("Cargo.toml");
         let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
         let manifest: toml::Table = text.parse()?;
-        let package = package(file).to_string();
+        // Most are named as their folder is.
+        let named = manifest.get("package").and_then(|package| package.get("name"));
+        let package = named.and_then(toml::Value::as_str).unwrap_or_else(|| package(file)).to_string();
         let test = file.strip_prefix(folder(file)).and_then(|rest| rest.strip_prefix("/tests/"));
         let test = test.map(|test| test.trim_end_matches(".rs"));
         let kind = if let Some(test) = test {
@@ -159,6 +161,7 @@ mod tests {
         assert_eq!(of("crates/d2m-bvh/tests/engine.rs::f"), format!("--test engine {bvh}"));
         assert_eq!(of("crates/d2m-bvh/src/walk/tests.rs::f"), format!("--lib {bvh}"));
         assert_eq!(of("crates/d2m-cli/src/scene/tests.rs::f"), "--bin d2m -p d2m-cli");
+        assert_eq!(of("benches/tests/hard_scenes.rs::f"), "--test hard_scenes -p d2m-benches");
         let [audit, world] = ["crates/d2m/tests/audit.rs::f", "crates/d2m-world/src/world.rs::f"].map(target);
         let both = "-p d2m -p d2m-world --features d2m/audit --features d2m/serde";
         assert_eq!(
