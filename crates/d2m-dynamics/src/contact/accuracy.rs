@@ -33,9 +33,4 @@ impl Accuracy {
     pub(super) fn in_crowd(self) -> bool {
         self.company != Company::Few
     }
-
-    /// What is aimed at where so much may be left.
-    pub(super) fn aim(self, tolerance: f64) -> f64 {
-        if tolerance > self.precision { tolerance } else { self.aim * self.precision }
-    }
 }

@@ -93,7 +93,7 @@ impl System {
         let begun = (self.residual(targets), self.impulses.clone());
         let mut best: Option<(f64, Vec<[f64; 3]>)> = None;
         let mut tolerance = self.tolerance(accuracy);
-        let mut aim = if effort.is_short() { self.enough(accuracy) } else { accuracy.aim(tolerance) };
+        let mut aim = if effort.is_short() { self.enough(accuracy) } else { self.aim(accuracy) };
         let slides = |block: &Block, of: &System| {
             let [_, t, u] = block.rates(|i| of.bodies[i].velocity);
             block.law.friction() * (t * t + u * u).sqrt()
@@ -134,7 +134,7 @@ impl System {
                 losses = 0;
             }
             tolerance = self.tolerance(accuracy);
-            aim = if effort.is_short() { self.enough(accuracy) } else { accuracy.aim(tolerance) };
+            aim = if effort.is_short() { self.enough(accuracy) } else { self.aim(accuracy) };
             let stops = losses == MOST_LOSSES || effort.is_short() && residual > LITTLE * last;
             if residual <= aim || stops {
                 break;

@@ -104,13 +104,26 @@ impl System {
         self.sweep_until(targets, accuracy, Pace::Steady, SWEEPS)
     }
 
+    /// What is aimed at: bodies at rest, whose errors add up from step to step, are solved far below the precision, a few that move to the precision,
+    /// or to what rounding of the heaviest one's momentum leaves of the lightest one's speed.
+    pub(super) fn aim(&self, accuracy: Accuracy) -> f64 {
+        let tolerance = self.tolerance(accuracy);
+        if tolerance <= accuracy.precision {
+            accuracy.aim * accuracy.precision
+        } else if self.moved() <= COUPLE && !accuracy.in_crowd() {
+            (f64::EPSILON * self.mass_ratio() * self.mean_speed()).clamp(accuracy.precision, tolerance)
+        } else {
+            tolerance
+        }
+    }
+
     /// What need not be solved any better.
     pub(super) fn enough(&self, accuracy: Accuracy) -> f64 {
         let tolerance = self.tolerance(accuracy);
         let moved = self.moved();
         let is_exact = self.has_joints || moved <= SOME && self.is_calm(accuracy);
         if is_exact || moved <= COUPLE && !accuracy.in_crowd() {
-            accuracy.aim(tolerance)
+            self.aim(accuracy)
         } else if moved <= FEW && !accuracy.in_crowd() {
             SEVERAL * tolerance
         } else {
