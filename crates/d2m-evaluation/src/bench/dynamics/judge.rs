@@ -1,13 +1,10 @@
 //! What a run must not do: judged by the numbers of its segments and the masses alone.
+use super::energy::risen;
 use super::scene::{Expectation, Scene};
 use d2m::bvh::{Posed, Solid, collide};
-use d2m::motion::{ConstantTwist, Pose, RigidMotion};
+use d2m::motion::Pose;
 use d2m_dynamics::{BodyId, Joint, Kind, Segment};
-use glam::{DMat3, DVec3};
-
-/// The part of the greatest kinetic energy or change of the potential one by which the energy at the middles of flights may rise, as
-/// docs/guarantees.md has it.
-const RISE: f64 = 1.0 / 128.0;
+use glam::DVec3;
 
 /// By how much the two sides of a joint may be apart after a step, in meters, as the tests of joints have it.
 const APART: f64 = 1e-6;
@@ -117,40 +114,4 @@ pub(super) fn intersecting(scene: &Scene, poses: &[Pose]) -> Result<usize, Strin
         }
     }
     Ok(count)
-}
-
-/// Does the energy at the middles of flights rise by more than it may?
-fn risen(scene: &Scene, segments: &[Segment]) -> Option<String> {
-    let simulation = &scene.simulation;
-    let gravity = simulation.options().gravity;
-    let mut flights = vec![ConstantTwist::REST; simulation.len()];
-    let (mut least, mut rise, mut greatest) = (f64::INFINITY, 0.0f64, 0.0f64);
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for segment in segments {
-        for (id, flight) in &segment.changed {
-            flights[id.index()] = *flight;
-        }
-        let middle = 0.5 * (segment.start + segment.end);
-        let (mut kinetic, mut potential) = (0.0, 0.0);
-        for &id in &scene.ids {
-            let properties = simulation.mass_properties(id)?;
-            let (pose, twist) = flights[id.index()].pose_and_twist(middle);
-            let spin = DMat3::from_quat(pose.rotation).transpose() * twist.angular;
-            let doubled =
-                properties.mass * twist.linear.length_squared() + spin.dot(properties.inertia * spin);
-            kinetic += 0.5 * doubled;
-            potential -= properties.mass * gravity.dot(pose.translation);
-        }
-        least = least.min(kinetic + potential);
-        rise = rise.max(kinetic + potential - least);
-        greatest = greatest.max(kinetic);
-        (low, high) = (low.min(potential), high.max(potential));
-    }
-    // Bodies that rest have neither: where each keeps its gap is then what counts.
-    let masses =
-        scene.ids.iter().filter_map(|&id| simulation.mass_properties(id)).map(|p| p.mass).sum::<f64>();
-    let lifted = masses * gravity.length() * simulation.options().gap;
-    let scale = greatest.max(high - low).max(lifted);
-    (rise > RISE * scale)
-        .then(|| format!("the energy rose by {rise:e}; kinetic {greatest:e} at most, scale {scale:e}"))
 }

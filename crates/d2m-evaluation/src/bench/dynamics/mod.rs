@@ -1,6 +1,7 @@
 //! `cargo xtask bench dynamics`: what a step of a simulation costs. Each run is judged before its times count.
 mod bound;
 mod compared;
+mod energy;
 mod judge;
 mod measure;
 mod peer;
