@@ -19,7 +19,9 @@
 //! of b less the greatest over those of a is a concave function of t, so it is least at an end of the flight. Bodies are in the convex hulls
 //! of their vertices, or within their radius of these.
 
+use crate::parts::proven_until;
 use crate::rigid_body::RigidBody;
+use d2m_bvh::Window;
 use d2m_feature::MovingSphere;
 use d2m_motion::Pose;
 use glam::{DMat3, DQuat, DVec3};
@@ -95,6 +97,30 @@ pub(crate) fn sizes(bodies: [&RigidBody; 2], now: f64, tau: f64) -> f64 {
     bodies.into_iter().map(size).sum()
 }
 
+/// May all of their vertices be placed?
+pub(crate) fn have_few_vertices(bodies: [&RigidBody; 2]) -> bool {
+    bodies.iter().map(|body| body.tree.mesh().vertex_count()).sum::<usize>() <= FEW
+}
+
+/// Until when two bodies are further apart than `needed` in a window of their flights, as follows from a direction from a to b that is about the unit
+/// vector `normal` at first, and turns with one of them or halfway between: no earlier than the window begins.
+///
+/// What bends off a direction grows with the square of the time, so where the window is too long parts of it are tried.
+pub(crate) fn apart_along_until(normal: DVec3, bodies: [&RigidBody; 2], window: Window, needed: f64) -> f64 {
+    let [a, b] = bodies.map(|body| body.flight.angular_velocity());
+    let is_apart = |spin: DVec3, from: f64, to: f64| {
+        let turned = (normal + spin.cross(normal) * (from - window.start())).normalize();
+        bound_along(turned, spin, bodies, from, to - from).is_some_and(|bound| bound > needed)
+    };
+    let mut until = window.start();
+    for spin in [a, b, (a + b) * 0.5] {
+        if until < window.end() {
+            until = until.max(proven_until(window, |from, to| is_apart(spin, from, to)));
+        }
+    }
+    until
+}
+
 /// A lower bound of how far two bodies are apart along a direction in their flights from `now` on, for a time `tau`: the direction from a to
 /// b that is the unit vector `normal` at first and then turns with `spin`. None: they have too many vertices to place.
 pub(crate) fn bound_along(
@@ -104,7 +130,7 @@ pub(crate) fn bound_along(
     now: f64,
     tau: f64,
 ) -> Option<f64> {
-    if bodies.iter().map(|body| body.tree.mesh().vertex_count()).sum::<usize>() > FEW {
+    if !have_few_vertices(bodies) {
         return None;
     }
     let poses = bodies.map(|body| body.pose_at(now));
@@ -228,6 +254,35 @@ mod tests {
                 assert!(bound <= gap, "{k}: {bound} > {gap}");
             }
         }
+    }
+
+    /// Where a direction shows nothing of a whole flight it does so of parts: until then the bodies are further apart than that.
+    #[test]
+    fn directions_show_more_of_parts_of_flights() {
+        let state = &mut 3;
+        let (mut whole, mut all, mut some) = (0, 0, 0);
+        for k in 0..600 {
+            let (a, b) = (any(DVec3::ZERO, 2.0, state), any(DVec3::X * 3.0, 2.0, state));
+            let bodies = [&a, &b];
+            let now = 1.0 + 0.1 * draw(state).abs();
+            let window = Window::try_new(now, now + 0.3 * draw(state).abs()).unwrap();
+            let posed = bodies.map(|body| Posed::new(&body.tree, body.pose_at(now)));
+            let found = distance(posed[0], posed[1], Solid::Filled).unwrap();
+            let needed = 0.5 * found.lower;
+            let until = apart_along_until(found.normal, bodies, window, needed);
+            let length = until - now;
+            let least = (0..=32).map(|i| apart(bodies, now + length * f64::from(i) / 32.0)).reduce(f64::min);
+            assert!(length == 0.0 || least.unwrap() > needed, "{k}: {least:?} {needed}");
+            let along = |body: &RigidBody| {
+                let spin = body.flight.angular_velocity();
+                bound_along(found.normal, spin, bodies, now, window.length()).unwrap() > needed
+            };
+            let is_whole = bodies.into_iter().any(along);
+            whole += u32::from(is_whole);
+            all += u32::from(!is_whole && until == window.end());
+            some += u32::from(length > 0.0 && until < window.end());
+        }
+        assert!(whole > 100 && all > 50 && some > 100, "{whole} {all} {some}");
     }
 
     /// The end of a bar turns towards a box: all of its speed is closing.

@@ -66,6 +66,7 @@ mod numbers;
 mod options;
 mod pair_state;
 mod pairs;
+mod parts;
 mod pull;
 mod pushed;
 mod quiet;

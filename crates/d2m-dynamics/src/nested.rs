@@ -27,6 +27,7 @@
 
 use crate::clearance::{ROUNDING, sizes};
 use crate::hollow::free;
+use crate::parts::proven_until;
 use crate::rigid_body::{AXES_REACH, RigidBody};
 use d2m_bvh::Window;
 use d2m_motion::Pose;
@@ -34,8 +35,6 @@ use glam::DVec3;
 
 /// A body whose turn moves none of its points by more than this part of what is to be shown does not turn, but for that.
 const STILL: f64 = 1.0 / 16.0;
-/// Parts of a flight for which axes are tried one by one: what the axis of a body turns in a part is so much less.
-const MOST_PARTS: u32 = 8;
 /// Cosine of the angle between the spin and an axis of the mesh up to which that axis is taken: a fifth of a radian.
 const NEAR_AXIS: f64 = 0.98;
 
@@ -57,22 +56,10 @@ pub(crate) fn is_apart_along_axis([a, b]: [&RigidBody; 2], now: f64, tau: f64, n
         .any(|pair| Nested::new(pair, now, tau, needed).is_some_and(|nested| nested.bound() > needed + lost))
 }
 
-/// Until when that is known of two bodies in a window of their flights: no earlier than it begins.
+/// Until when that is known of two bodies in a window of their flights: no earlier than it begins. What the axis of a body turns in a part of it is so
+/// much less.
 pub(crate) fn apart_along_axis_until(bodies: [&RigidBody; 2], window: Window, needed: f64) -> f64 {
-    let time = |part: u32| {
-        let passed = window.length() * (f64::from(part) / f64::from(MOST_PARTS));
-        if part == MOST_PARTS { window.end() } else { (window.start() + passed).min(window.end()) }
-    };
-    let (mut done, mut next) = (0, MOST_PARTS);
-    while next > 0 && done < MOST_PARTS {
-        let (from, to) = (time(done), time(done + next));
-        if is_apart_along_axis(bodies, from, to - from, needed) {
-            done += next;
-        } else {
-            next /= 2;
-        }
-    }
-    time(done)
+    proven_until(window, |from, to| is_apart_along_axis(bodies, from, to - from, needed))
 }
 
 /// A body in another one, for a flight.

@@ -1,6 +1,6 @@
 //! What is known of pairs of bodies, and the queries about them.
 
-use crate::clearance::{Clearance, approach, bound_along};
+use crate::clearance::{Clearance, apart_along_until, approach, bound_along, have_few_vertices};
 #[cfg(feature = "audit")]
 use crate::concluded::conclude;
 use crate::contact::ContactPoint;
@@ -128,7 +128,9 @@ impl Pair {
 
     /// Are the bodies further apart than this at a time, as follows from what is known of them?
     pub(crate) fn is_beyond(&self, margin: f64, bodies: [&RigidBody; 2], time: f64) -> bool {
+        let along = |normal| bound_along(normal, DVec3::ZERO, bodies, time, 0.0);
         self.clearance.is_some_and(|known| known.bound(bodies, time, 0.0) > margin)
+            || self.normal.and_then(along).is_some_and(|apart| apart > margin)
     }
 
     /// The separation at which a flight of the pair ends.
@@ -210,11 +212,12 @@ fn proven_clear_until(
     if bound_from_centers([a, b], now, length) > needed {
         return Ok(window.end());
     }
-    let along = |normal: DVec3, spin: DVec3| {
-        bound_along(normal, spin, [a, b], now, length).is_some_and(|bound| bound > needed)
-    };
     let spins = [a, b].map(|body| body.flight.angular_velocity());
-    if pair.normal.is_some_and(|normal| spins.into_iter().any(|spin| along(normal, spin))) {
+    let is_apart_along = |normal: DVec3| {
+        let bound = |spin| bound_along(normal, spin, [a, b], now, length);
+        spins.into_iter().filter_map(bound).any(|bound| bound > needed)
+    };
+    if pair.normal.is_some_and(is_apart_along) {
         return Ok(window.end());
     }
     if pair.axes.is_due() {
@@ -225,20 +228,22 @@ fn proven_clear_until(
         }
         pair.axes.failed();
     }
-    // Worth the distance where it will do, or where no direction is known.
-    let will_do = pair.measured == Some(now) && pair.apart - approach([a, b]) * length > needed;
-    if !(will_do || pair.normal.is_none()) {
-        return Ok(now);
-    }
+    // Worth the distance where it will do, or where no direction is known, or none from the present poses of bodies whose vertices are few.
     let poses = [a, b].map(|body| body.pose_at(now));
-    let Some(found) = distance_of([a, b], poses, f64::INFINITY, &mut pair.cache)? else {
-        return Ok(now);
-    };
-    let known = Clearance { poses, distance: found.lower };
-    (pair.clearance, pair.normal) = (Some(known), Some(found.normal));
-    let is_clear =
-        known.bound([a, b], now, length) > needed || spins.into_iter().any(|spin| along(found.normal, spin));
-    Ok(if is_clear { window.end() } else { now })
+    let will_do = pair.measured == Some(now) && pair.apart - approach([a, b]) * length > needed;
+    let is_old = pair.contacts.is_empty() && have_few_vertices([a, b]);
+    let is_known = pair.clearance.is_some_and(|known| known.poses == poses);
+    if !is_known
+        && (will_do || is_old || pair.normal.is_none())
+        && let Some(found) = distance_of([a, b], poses, f64::INFINITY, &mut pair.cache)?
+    {
+        let known = Clearance { poses, distance: found.lower };
+        (pair.clearance, pair.normal) = (Some(known), Some(found.normal));
+        if known.bound([a, b], now, length) > needed {
+            return Ok(window.end());
+        }
+    }
+    Ok(pair.normal.map_or(now, |normal| apart_along_until(normal, [a, b], window, needed)))
 }
 
 /// The distance of two bodies in these poses; `None`: it is more than the cutoff.
