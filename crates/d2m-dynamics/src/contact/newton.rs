@@ -61,6 +61,8 @@ const MOST_SOFT: f64 = 1e-2;
 const JOINED: f64 = 1e-5;
 /// Rounds one after the other that gain nothing, after which no other one is tried.
 const MOST_LOSSES: u32 = 3;
+/// Of bodies that move, a round that leaves more than this part of the one before is the last one, once what is left is within the tolerance.
+const GAINED: f64 = 1.0 / 16.0;
 /// Of a crowd, a round that leaves more than this of the one before is the last one.
 const LITTLE: f64 = 0.8;
 /// The softness of rows, of their scale, where multipliers are to prove that no velocities obey them: what these leave is of this order
@@ -136,7 +138,9 @@ impl System {
             tolerance = self.tolerance(accuracy);
             aim = if effort.is_short() { self.enough(accuracy) } else { self.aim(accuracy) };
             let stops = losses == MOST_LOSSES || effort.is_short() && residual > LITTLE * last;
-            if residual <= aim || stops {
+            // What moves may leave so much: it is worth a round that gains.
+            let is_left = tolerance > accuracy.precision && residual <= tolerance && residual > GAINED * last;
+            if residual <= aim || stops || is_left {
                 break;
             }
             last = residual;

@@ -32,6 +32,10 @@ pub(crate) const HIT: f64 = 0.625;
 pub(crate) const NEAR: f64 = 1.5;
 /// The part of the gap to which curvature may bring a contact within a flight.
 const KEPT: f64 = 0.45;
+/// Where room is shared, contacts that are this many times closer than the widest ones close by less of what they have, but at least by a part of
+/// it: what presses would come ever closer to what it moves, while there is room behind.
+const MUCH: f64 = 4.0;
+const LEAST_SHARE: f64 = 0.25;
 /// The part of the gap that a step restores at most where it is missing.
 const RESTORED: f64 = 0.25;
 
@@ -54,10 +58,12 @@ pub(crate) struct Row {
 /// ```text
 /// rate ≥ (g − d)/τ + m τ/2                        beyond the gap
 /// rate ≥ max(0, (0.45 g − d)/τ + m τ/2)        within it; and what is missing to the gap, a quarter of it a step
-/// rate ≥ (5/8 min(g, d) − d)/τ + m τ/2         if room is shared
+/// rate ≥ p (5/8 min(g, d) − d)/τ + m τ/2       if room is shared: p = 4 min(g, d) over the greatest of these, from 1/4 to 1
 /// ```
 pub(crate) fn select(found: &[ContactPoint], span: Span, velocity: impl Fn(usize) -> Velocity) -> Vec<Row> {
     let mut rows = Vec::new();
+    let near = |contact: &ContactPoint| contact.distance.min(contact.gap);
+    let widest = found.iter().filter(|c| c.row.is_none()).map(near).fold(0.0, f64::max);
     for (k, contact) in found.iter().enumerate() {
         if let Some(row) = contact.row {
             rows.push(Row { contact: k, target: row.target, pushing: row.pushing });
@@ -79,7 +85,7 @@ pub(crate) fn select(found: &[ContactPoint], span: Span, velocity: impl Fn(usize
         // A gap in a step: in a short rest of one, making room at once would be a jerk.
         let most = gap / span.step;
         let target = if span.room == Room::Shared {
-            curved - contact.shared_room() / tau
+            curved - contact.shared_room() * (MUCH * near(contact) / widest).clamp(LEAST_SHARE, 1.0) / tau
         } else if contact.is_expected {
             (curved - (d - gap) / tau).min(0.0)
         } else if d > gap {

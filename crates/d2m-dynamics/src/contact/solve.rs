@@ -104,14 +104,14 @@ impl System {
         self.sweep_until(targets, accuracy, Pace::Steady, SWEEPS)
     }
 
-    /// What is aimed at: bodies at rest, whose errors add up from step to step, are solved far below the precision, a few that move to the precision,
-    /// or to what rounding of the heaviest one's momentum leaves of the lightest one's speed.
+    /// What is aimed at: bodies at rest, whose errors add up from step to step, are solved far below the precision, one that moves alone to the
+    /// precision, as far as rounds gain much.
     pub(super) fn aim(&self, accuracy: Accuracy) -> f64 {
         let tolerance = self.tolerance(accuracy);
         if tolerance <= accuracy.precision {
             accuracy.aim * accuracy.precision
-        } else if self.moved() <= COUPLE && !accuracy.in_crowd() {
-            (f64::EPSILON * self.mass_ratio() * self.mean_speed()).clamp(accuracy.precision, tolerance)
+        } else if self.moved() == 1 && !accuracy.in_crowd() {
+            accuracy.precision
         } else {
             tolerance
         }
