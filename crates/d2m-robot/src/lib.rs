@@ -26,9 +26,10 @@
 //!
 //! ## Errors
 //! [`RobotError`]: file, link or joint, and the value found.
-#![cfg_attr(not(feature = "dynamics"), doc = "\n[`RobotBodies`]: ./index.html#simulations")]
-#![cfg_attr(not(feature = "dynamics"), doc = "[`Base`]: ./index.html#simulations")]
-#![cfg_attr(not(feature = "dynamics"), doc = "[`SimulatedRobot`]: ./index.html#simulations")]
+#![cfg_attr(not(feature = "dynamics"), doc = "")]
+#![cfg_attr(not(feature = "dynamics"), doc = " [`RobotBodies`]: index.html#simulations")]
+#![cfg_attr(not(feature = "dynamics"), doc = " [`Base`]: index.html#simulations")]
+#![cfg_attr(not(feature = "dynamics"), doc = " [`SimulatedRobot`]: index.html#simulations")]
 #![doc(html_root_url = "https://docs.rs/d2m-robot")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
