@@ -55,7 +55,8 @@ pub struct Departure {
 ///
 /// Promise: `left.hi` is a time at which the distance is proven to be more than L = `min_separation` + δ, and from there on the answer is
 /// that of [`time_of_contact`](crate::time_of_contact). As long as the bodies are proven to stay within L of each other – in spans, and
-/// where no span is proven at times that are 1e-6 of the window apart – they have not left.
+/// where no span is proven at times that are 1e-6 of the window apart – they have not left. With [`Mode::Exists`](crate::Mode::Exists) the answer is
+/// some contact after that, not the first one: nothing is promised of the time before it.
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, Moving, QueryOptions, StartState, TriMesh, Window, departure};
