@@ -62,7 +62,6 @@ pub(crate) struct Row {
 /// ```
 pub(crate) fn select(found: &[ContactPoint], span: Span, velocity: impl Fn(usize) -> Velocity) -> Vec<Row> {
     let mut rows = Vec::new();
-    let near = |contact: &ContactPoint| contact.distance.min(contact.gap);
     let widest = found.iter().filter(|c| c.row.is_none()).map(near).fold(0.0, f64::max);
     for (k, contact) in found.iter().enumerate() {
         if let Some(row) = contact.row {
@@ -85,7 +84,7 @@ pub(crate) fn select(found: &[ContactPoint], span: Span, velocity: impl Fn(usize
         // A gap in a step: in a short rest of one, making room at once would be a jerk.
         let most = gap / span.step;
         let target = if span.room == Room::Shared {
-            curved - contact.shared_room() * (MUCH * near(contact) / widest).clamp(LEAST_SHARE, 1.0) / tau
+            curved - share(contact, widest) / tau
         } else if contact.is_expected {
             (curved - (d - gap) / tau).min(0.0)
         } else if d > gap {
@@ -98,4 +97,36 @@ pub(crate) fn select(found: &[ContactPoint], span: Span, velocity: impl Fn(usize
         rows.push(Row { contact: k, target, pushing: target.min(0.0) });
     }
     rows
+}
+
+/// The distance, at most the gap.
+fn near(contact: &ContactPoint) -> f64 {
+    contact.distance.min(contact.gap)
+}
+
+/// By how much a contact may close where room is shared. What has none, as where flights would lead too close, is asked for all the same.
+fn share(contact: &ContactPoint, widest: f64) -> f64 {
+    let room = contact.shared_room();
+    if room > 0.0 { room * (MUCH * near(contact) / widest).clamp(LEAST_SHARE, 1.0) } else { room }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::point::upright;
+
+    /// The closest contact closes by a quarter of its share, one half as far as the widest by all of it; what touches or is too close is left as
+    /// it is, also where nothing is apart.
+    #[test]
+    fn contacts_much_closer_than_others_close_by_less() {
+        let at = |distance: f64| ContactPoint { distance, ..upright([0, 1]) };
+        let span = Span { remaining: 1.0, step: 1.0, resting_speed: 1.0, room: Room::Shared };
+        let targets = |distances: &[f64]| -> Vec<f64> {
+            let contacts: Vec<ContactPoint> = distances.iter().map(|&d| at(d)).collect();
+            select(&contacts, span, |_| Velocity::default()).iter().map(|row| row.target).collect()
+        };
+        assert_eq!(targets(&[1.0, 0.5, 0.125, 0.015625]), [-0.375, -0.1875, -0.0234375, -0.00146484375]);
+        assert_eq!(targets(&[0.0, 0.0]), [0.0, 0.0]);
+        assert_eq!(targets(&[0.5, -0.5]), [-0.1875, 0.1875]);
+    }
 }
