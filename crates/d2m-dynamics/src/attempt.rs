@@ -2,7 +2,8 @@
 
 use crate::SimulationOptions;
 use crate::contact::{
-    Accuracy, Company, ContactPoint, Present, Room, SolverBody, Span, Start, System, add, select,
+    Accuracy, Company, ContactPoint, Present, Room, SolverBody, Span, Start, System, add, in_common_turn,
+    select,
 };
 use crate::ends::Ends;
 use crate::joint_rows::Joined;
@@ -183,7 +184,10 @@ impl Problem<'_> {
         let accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM, slow, company: self.company };
         let pushing: Vec<f64> = rows.iter().map(|row| row.pushing).collect();
         let spins: Vec<DVec3> = free.iter().map(|body| body.velocity.angular).collect();
-        let mut system = System::new(free, &contacts, place).for_flights(&contacts, &targets, span.remaining);
+        let velocities = |c: &ContactPoint| [c.a, c.b].map(|body| free[place(body)].velocity);
+        let in_turn = |c: &ContactPoint| in_common_turn(c, velocities(c), span.remaining);
+        let turning: Vec<ContactPoint> = contacts.iter().map(in_turn).collect();
+        let mut system = System::new(free, &turning, place).for_flights(&contacts, &targets, span.remaining);
         system.warm_start(&contacts);
         let found = Found {
             contacts,

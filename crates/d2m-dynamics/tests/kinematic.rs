@@ -135,3 +135,26 @@ fn bodies_whose_motion_is_over_are_refused() {
     let outside = OutsideDomain { start: 0.0, end: 1.0, from: 2.0, to: 2.0 };
     assert_eq!(simulation.add(&late), Err(SimulationError::OutsideMotion { body: "late".into(), outside }));
 }
+
+/// A box that turns with a table and that friction holds, with half of what it takes to slide: at the same place of the table all the time. Flights
+/// along tangents would lead it outward by 12 millimeters in each of two seconds.
+#[test]
+fn what_turns_with_a_table_stays_on_it() {
+    let rate = 0.5 * (9.81_f64).sqrt();
+    let tree = |shape: &str| Arc::new(MeshTree::new(d2m_shapes::mesh(shape).unwrap()));
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let spin = DVec3::Y * rate;
+    let motion = ConstantTwist::REST.with_position(DVec3::NEG_Y * 0.5).with_angular_velocity(spin);
+    let table = Body::new("table", tree("box?x=5&y=0.5&z=5")).with_kind(Kind::Kinematic(Arc::new(motion)));
+    simulation.add(&table.with_friction(1.0)).unwrap();
+    let place = DVec3::new(2.0, 0.1 + GAP, 0.0);
+    let body = Body::new("box", tree("box?x=0.2&y=0.1&z=0.2")).with_friction(1.0).with_position(place);
+    let body = body.with_linear_velocity(spin.cross(place)).with_angular_velocity(spin);
+    let id = simulation.add(&body).unwrap();
+    while simulation.time() < 2.0 {
+        simulation.step().unwrap();
+        let expected = DQuat::from_rotation_y(rate * simulation.time()) * place;
+        let off = simulation.position(id).distance(expected);
+        assert!(off < 0.1 * GAP, "{off} at {}", simulation.time());
+    }
+}

@@ -4,6 +4,7 @@ mod accuracy;
 mod anderson;
 mod block;
 mod chosen;
+mod common_turn;
 mod convex;
 mod factor;
 mod impact;
@@ -18,6 +19,7 @@ mod sweeps;
 mod system;
 
 pub(crate) use accuracy::{Accuracy, Company};
+pub(crate) use common_turn::in_common_turn;
 pub(crate) use impact::impact;
 pub(crate) use infeasible::{ASKEW, CROSSING, Squeeze};
 pub(crate) use law::Law;

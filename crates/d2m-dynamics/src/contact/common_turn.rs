@@ -1,0 +1,56 @@
+//! What turns with what it lies on, as on a turntable.
+
+use super::ContactPoint;
+use crate::velocity::Velocity;
+use glam::{DQuat, DVec3};
+
+/// The contact with the rates along its surface that it has in the middle of a flight of this length, where both bodies turn about its normal the
+/// same way.
+///
+/// Centers fly straight in a flight. Along the tangent of their circle they would lead away from the axis, by (ω h)² r/2 in each
+/// flight, and what sticks would creep outward at ω² r h/2. Taken with the arms of the middle of the flight velocities are those of chords. Of the
+/// spins what both have in common about the normal counts: a ball that rolls turns about an axis in the surface, and its arm does not turn with it.
+pub(crate) fn in_common_turn(contact: &ContactPoint, [a, b]: [Velocity; 2], length: f64) -> ContactPoint {
+    let [of_a, of_b] = [a, b].map(|velocity| velocity.angular.dot(contact.normal));
+    if contact.row.is_some() || of_a * of_b <= 0.0 {
+        return *contact;
+    }
+    let common = if of_a.abs() < of_b.abs() { of_a } else { of_b };
+    // A turn by half of that in half of the flight, without functions that differ from platform to platform: by 2 atan(φ/2), not φ.
+    let half = contact.normal * (0.25 * common * length);
+    let turn = DQuat::from_xyzw(half.x, half.y, half.z, 1.0).normalize();
+    let changed = |velocity: Velocity, arm: DVec3| velocity.angular.cross(turn * arm - arm);
+    let added = changed(b, contact.arm_b) - changed(a, contact.arm_a);
+    let [first, second] = contact.tangents.map(|tangent| tangent.dot(added));
+    let running = [contact.running[0] + first, contact.running[1] + second];
+    ContactPoint { running, ..*contact }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::point::upright;
+
+    /// A body on a turntable: with the velocity of its chord it does not slide, with that of the tangent it does.
+    #[test]
+    fn what_turns_with_a_table_flies_along_the_chord() {
+        let (rate, length, place) = (2.0, 0.05, DVec3::new(1.5, 0.5, 0.0));
+        let spin = DVec3::Y * rate;
+        let turned = ContactPoint { arm_a: place - DVec3::Y * 0.5, ..upright([0, 1]) };
+        let table = Velocity { linear: DVec3::ZERO, angular: spin };
+        let slides = |linear: DVec3| {
+            let body = Velocity { linear, angular: spin };
+            let contact = in_common_turn(&turned, [table, body], length);
+            let relative = body.of_point(contact.arm_b) - table.of_point(contact.arm_a);
+            let along = [0, 1].map(|k| contact.tangents[k].dot(relative) + contact.running[k]);
+            along[0].hypot(along[1])
+        };
+        let middle = DQuat::from_rotation_y(0.5 * rate * length) * place;
+        assert!(slides(spin.cross(middle)) < 1e-3 * slides(spin.cross(place)));
+        // What lies on something that stands still, or turns the other way, has the rates that it has.
+        for angular in [DVec3::ZERO, -spin, DVec3::X * rate] {
+            let other = Velocity { linear: DVec3::ZERO, angular };
+            assert_eq!(in_common_turn(&turned, [table, other], length).running, [0.0; 2]);
+        }
+    }
+}
