@@ -57,6 +57,9 @@ enum Subject {
     /// Steps of simulations: boxes that fall into a pile, a bolt, gears, a sleeping pile, pebbles and knots; beside rapier a stack, bins, a
     /// double pendulum, fast gears, nested dolls, with the targets of each.
     Dynamics,
+    /// Scenes of hard kinds – inclines at their limit, wedges, arches, houses of cards, drums, presses, paddles, chains … – each held against what
+    /// must happen by physics, with --cap seconds of the processor each (30); some minutes.
+    Kinds,
     /// Construction and refit of trees, one thread and two, beside parry's; the first answer for two meshes; a minute.
     Trees,
     /// Edges of a planner: an arm of seven joints among five obstacles, or the robot of --robot; with --count so many edges a step.
@@ -74,9 +77,12 @@ pub(crate) struct Options {
     /// With `robots`: the SRDF file of --robot.
     #[arg(long, requires = "robot")]
     srdf: Option<PathBuf>,
-    /// With `dynamics`: only scenes whose name contains one of these.
+    /// With `dynamics` and `kinds`: only scenes whose name contains one of these.
     #[arg(long, value_delimiter = ',', requires = "subject")]
     scene: Vec<String>,
+    /// With `kinds`: write the scenes as files to this folder, for `d2m simulate` and other judges, and run none.
+    #[arg(long, value_name = "DIR", requires = "subject")]
+    write: Option<PathBuf>,
     /// With `dynamics`: 300 and 1000 boxes, the bin of 1000 and fast gears on a pin too; minutes.
     #[arg(long, requires = "subject")]
     full: bool,
@@ -104,7 +110,7 @@ pub(crate) struct Options {
     /// Times each fast query is asked; the least time counts.
     #[arg(long, default_value_t = 5, value_parser = crate::at_least_one)]
     rounds: usize,
-    /// Seed of the trials.
+    /// Seed of the trials, and of the scenes of `kinds`.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Tolerance, in units of the models' radius.
@@ -200,6 +206,7 @@ pub(crate) fn run(options: &Options) -> TaskResult {
     match (options.subject, options.only) {
         _ if options.check => check::run(options.accept),
         (Some(Subject::Dynamics), _) => dynamics::run(extent, &options.scene),
+        (Some(Subject::Kinds), _) => dynamics::kinds::run(options),
         (Some(Subject::Trees), _) => scenes::trees::run(options.rounds),
         (Some(Subject::Robots), _) => robots::run(options),
         (None, Some(Only::Scenes)) => scenes::run(options.rounds),

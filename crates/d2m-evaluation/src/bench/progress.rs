@@ -94,6 +94,11 @@ impl Progress {
         self.0.set_message(format!("({}) {what}, about {seconds:.0} s", part.title()));
     }
 
+    /// What is done now.
+    pub(super) fn tell(&self, what: &str) {
+        self.0.set_message(what.to_owned());
+    }
+
     /// Adds to the part of the expected time that has passed.
     pub(super) fn done(&self, seconds: f64) {
         self.0.inc(milliseconds(seconds));

@@ -118,7 +118,7 @@ impl Scene {
         let shape = tree("gear?teeth=16&triangles=5000")?;
         let drive = ConstantTwist::REST.with_angular_velocity(DVec3::Z * RATE);
         let driven = Body::new("driven", Arc::clone(&shape)).with_friction(0.1);
-        scene.add(driven.with_kind(Kind::Kinematic(Arc::new(drive))))?;
+        scene.drive(driven, drive)?;
         // A gap of teeth opposite to a tooth.
         let (place, half_a_tooth) = (DVec3::X * 1.88, DQuat::from_rotation_z(PI / 16.0));
         let turned = Body::new("turned", shape).with_friction(0.1).with_position(place);

@@ -3,7 +3,7 @@ use super::energy::risen;
 use super::scene::{Expectation, Scene};
 use d2m::bvh::{Posed, Solid, collide};
 use d2m::motion::Pose;
-use d2m_dynamics::{BodyId, Joint, Kind, Segment};
+use d2m_dynamics::{BodyId, Joint, JointKind, Kind, Segment};
 use glam::DVec3;
 
 /// By how much the two sides of a joint may be apart after a step, in meters, as the tests of joints have it.
@@ -80,14 +80,19 @@ pub(super) fn fault(scene: &Scene, starts: &[Pose], segments: &[Segment]) -> Str
 }
 
 /// Are the two sides of a joint apart?
-fn parted(scene: &Scene, starts: &[Pose]) -> Option<String> {
+pub(super) fn parted(scene: &Scene, starts: &[Pose]) -> Option<String> {
     let now = |id: BodyId, point: DVec3| {
         let (start, end) = (starts[id.index()], scene.simulation.pose(id));
         end.transform_point(start.rotation.conjugate() * (point - start.translation))
     };
     let apart = |joint: &Joint| {
         let second = joint.b.map_or(joint.point, |id| now(id, joint.point));
-        now(joint.a, joint.point).distance(second)
+        let between = now(joint.a, joint.point) - second;
+        match joint.kind {
+            // Along its axis it moves. What the axis is a direction of does not turn, in the scenes here.
+            JointKind::Prismatic => between.reject_from(joint.axis).length(),
+            _ => between.length(),
+        }
     };
     let most = scene.joints.iter().map(apart).fold(0.0, f64::max);
     (most > APART).then(|| format!("the sides of a joint are {most:e} apart"))

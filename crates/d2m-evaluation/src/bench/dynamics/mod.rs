@@ -3,6 +3,7 @@ mod bound;
 mod compared;
 mod energy;
 mod judge;
+pub(super) mod kinds;
 mod measure;
 mod peer;
 mod scene;

@@ -1,7 +1,7 @@
 //! What a scene is, and those that show how the cost of a step grows.
 use super::bound::Bound;
 use d2m::bvh::MeshTree;
-use d2m::motion::{ConstantTwist, Pose};
+use d2m::motion::{AnyMotion, ConstantTwist, Pose};
 use d2m_dynamics::{Body, BodyId, Joint, Kind, Simulation, SimulationOptions};
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
@@ -42,6 +42,8 @@ pub(super) struct Scene {
     pub(super) simulation: Simulation,
     /// All bodies as they were added, so that the first has the first name.
     pub(super) bodies: Vec<Body>,
+    /// The motions of the bodies that follow one, each with the body's place, in a form that files have.
+    pub(super) motions: Vec<(usize, AnyMotion)>,
     pub(super) joints: Vec<Joint>,
     /// Dynamic bodies.
     pub(super) ids: Vec<BodyId>,
@@ -98,6 +100,7 @@ impl Scene {
             name: name.into(),
             simulation: Simulation::new(options)?,
             bodies: Vec::new(),
+            motions: Vec::new(),
             joints: Vec::new(),
             ids: Vec::new(),
             triangles: 0,
@@ -117,6 +120,14 @@ impl Scene {
             self.triangles = body.tree.mesh().triangles().len();
         }
         self.bodies.push(body);
+        Ok(id)
+    }
+
+    /// With this body, which follows this motion.
+    pub(super) fn drive(&mut self, body: Body, motion: impl Into<AnyMotion>) -> Result<BodyId, Error> {
+        let motion = motion.into();
+        let id = self.add(body.with_kind(Kind::Kinematic(Arc::new(motion.clone()))))?;
+        self.motions.push((id.index(), motion));
         Ok(id)
     }
 
@@ -188,7 +199,7 @@ impl Scene {
         scene.add(plate.with_position(DVec3::Z * (low - 0.502)))?;
         let drive = ConstantTwist::REST.with_angular_velocity(DVec3::Z);
         let driven = Body::new("driven", Arc::clone(&shape));
-        scene.add(driven.with_kind(Kind::Kinematic(Arc::new(drive))))?;
+        scene.drive(driven, drive)?;
         // The tips reach nearly to the roots, a gap of teeth opposite to a tooth.
         let apart = DVec3::X * (2.0 - 0.6 * DEPTH) * outer;
         let half_a_tooth = DQuat::from_rotation_z(core::f64::consts::PI / f64::from(TEETH));

@@ -2,18 +2,18 @@
 use super::scene::{Error, Scene};
 use crate::bench::body::write_obj;
 use d2m::bvh::MeshTree;
-use d2m_dynamics::{Body, Joint, JointKind, Kind};
+use d2m_dynamics::{Body, Joint, JointKind, Kind, Mass, MotorTarget};
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
 
 /// A scene's name as that of a file.
-fn stem(scene: &Scene) -> String {
+pub(super) fn stem(scene: &Scene) -> String {
     scene.name.replace([' ', '/'], "-")
 }
 
-/// Writes `NAME.json` and its meshes. What the scenes here have no use of – masses, groups, limits of joints, motors – is not written.
+/// Writes `NAME.json` and its meshes. What the scenes here have no use of – groups, limits of joints, springs – is not written.
 pub(super) fn write(scene: &Scene, folder: &Path) -> Result<(), Error> {
     std::fs::create_dir_all(folder)?;
     let stem = stem(scene);
@@ -27,7 +27,10 @@ pub(super) fn write(scene: &Scene, folder: &Path) -> Result<(), Error> {
             write_obj(&folder.join(&mesh), body.tree.mesh())?;
             shapes.push(&body.tree);
         }
-        bodies.push(body_value(body, &mesh));
+        bodies.push(body_value(body, &mesh)?);
+    }
+    for (place, motion) in &scene.motions {
+        bodies[*place]["motion"] = serde_json::to_value(motion)?;
     }
     let joints = scene.joints.iter().map(|joint| joint_value(joint, scene)).collect::<Result<Vec<_>, _>>()?;
     let options = scene.simulation.options();
@@ -39,6 +42,7 @@ pub(super) fn write(scene: &Scene, folder: &Path) -> Result<(), Error> {
             "step": options.step,
             "gap": options.gap,
             "end": scene.seconds,
+            "sleep": options.sleeping,
         },
     });
     Ok(std::fs::write(folder.join(stem + ".json"), serde_json::to_string_pretty(&text)?)?)
@@ -49,49 +53,66 @@ fn quaternion(q: DQuat) -> [f64; 4] {
     [q.w, q.x, q.y, q.z]
 }
 
-fn body_value(body: &Body, mesh: &str) -> Value {
+/// All but the motion.
+fn body_value(body: &Body, mesh: &str) -> Result<Value, Error> {
+    let kind = match body.kind {
+        Kind::Dynamic => "dynamic",
+        Kind::Static => "static",
+        Kind::Kinematic(_) => "kinematic",
+        Kind::Driven => {
+            return Err(format!("{} is driven from outside, which no file does", body.name).into());
+        }
+    };
     let mut value = json!({
         "name": body.name,
         "mesh": mesh,
+        "kind": kind,
         "friction": body.friction,
         "restitution": body.restitution,
     });
-    match &body.kind {
-        Kind::Kinematic(motion) => {
-            let (pose, twist) = motion.pose_and_twist(0.0);
-            value["kind"] = "kinematic".into();
-            value["motion"] = json!({
-                "x": pose.translation.to_array(),
-                "q": quaternion(pose.rotation),
-                "v": twist.linear.to_array(),
-                "w": twist.angular.to_array(),
-            });
-        }
-        kind => {
-            value["kind"] = if matches!(kind, Kind::Dynamic) { "dynamic" } else { "static" }.into();
-            value["pose"] = json!({ "x": body.position.to_array(), "q": quaternion(body.orientation) });
-        }
+    match body.mass {
+        Mass::Density(density) => value["density"] = density.into(),
+        Mass::Total(mass) => value["mass"] = mass.into(),
+        _ => return Err(format!("the inertia of {} is not written", body.name).into()),
+    }
+    if !matches!(body.kind, Kind::Kinematic(_)) {
+        value["pose"] = json!({ "x": body.position.to_array(), "q": quaternion(body.orientation) });
     }
     if (body.linear_velocity, body.angular_velocity) != (DVec3::ZERO, DVec3::ZERO) {
         let [v, w] = [body.linear_velocity, body.angular_velocity].map(|rate| rate.to_array());
         value["velocity"] = json!({ "v": v, "w": w });
     }
-    value
+    Ok(value)
 }
 
 fn joint_value(joint: &Joint, scene: &Scene) -> Result<Value, Error> {
-    if joint.kind != JointKind::Revolute {
-        return Err(format!("{:?} joints are not written", joint.kind).into());
-    }
+    let kind = match joint.kind {
+        JointKind::Revolute => "revolute",
+        JointKind::Prismatic => "prismatic",
+        JointKind::Spherical => "spherical",
+        other => return Err(format!("{other:?} joints are not written").into()),
+    };
     let name = |id: d2m_dynamics::BodyId| &scene.bodies[id.index()].name;
-    Ok(json!({
-        "kind": "revolute",
+    let mut value = json!({
+        "kind": kind,
         "a": name(joint.a),
         "b": joint.b.map(name),
         "point": joint.point.to_array(),
         "axis": joint.axis.to_array(),
         "collide": joint.collide,
-    }))
+    });
+    if let Some(motor) = joint.motor {
+        let (key, target) = match motor.target {
+            MotorTarget::Velocity(rate) => ("velocity", rate),
+            MotorTarget::Position(place) => ("position", place),
+            other => return Err(format!("motors with {other:?} are not written").into()),
+        };
+        value["motor"] = json!({ key: target, "stiffness": motor.stiffness, "damping": motor.damping });
+        if motor.most.is_finite() {
+            value["motor"]["max"] = motor.most.into();
+        }
+    }
+    Ok(value)
 }
 
 #[cfg(test)]
