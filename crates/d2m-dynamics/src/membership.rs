@@ -135,10 +135,15 @@ impl Simulation {
     /// Gives a body the first place that is free, or the one that is wanted.
     fn settle_in(&mut self, body: RigidBody, wanted: Option<usize>) -> BodyId {
         let is_free = |place: &usize| self.bodies.get(*place).is_none_or(|body| body.role == Role::Vacant);
-        let wanted = wanted.filter(|place| *place <= self.bodies.len() && is_free(place));
-        let place = wanted.unwrap_or_else(|| self.next_index());
-        if place == self.generations.len() {
-            self.generations.push(0);
+        let place = wanted.filter(is_free).unwrap_or_else(|| self.next_index());
+        // Places before it that were given up.
+        while self.bodies.len() < place {
+            let mut vacant = body.clone();
+            vacant.vacate();
+            self.bodies.push(vacant);
+        }
+        if place >= self.generations.len() {
+            self.generations.resize(place + 1, 0);
         }
         let id = BodyId { place: place as u32, generation: self.generations[place] };
         // No flight of the place has had this number before.

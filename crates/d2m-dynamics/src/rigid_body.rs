@@ -178,6 +178,9 @@ impl RigidBody {
         let dynamic = properties.is_some();
         let inverse_inertia = if dynamic { inertia.inverse() } else { DMat3::ZERO };
         let rotation = DMat3::from_quat(orientation);
+        if body.solid == Some(Solid::Filled) && !body.tree.is_watertight() {
+            return Err(bad("solid", "of a mesh that is not watertight".to_owned()));
+        }
         let solid =
             body.solid.unwrap_or(if body.tree.is_watertight() { Solid::Filled } else { Solid::Surface });
         let rest =

@@ -6,7 +6,7 @@ use crate::held::Source;
 use crate::joint_rows::Joined;
 use crate::numbers::{Fault, material_fault};
 use crate::pair_state::PairState;
-use crate::rigid_body::Role;
+use crate::rigid_body::{RigidBody, Role};
 use crate::{Simulation, SimulationError, SimulationOptions};
 use std::collections::BTreeSet;
 
@@ -61,6 +61,22 @@ struct PairMaterial {
 }
 
 impl Snapshot {
+    /// What it keeps of the body of a place.
+    fn state(&self, place: usize) -> Option<&BodyState> {
+        let found = self.bodies.binary_search_by_key(&place, |state: &BodyState| state.id.index());
+        found.ok().map(|k| &self.bodies[k])
+    }
+
+    /// Is this body of a place the one that it keeps?
+    fn has(&self, body: &RigidBody, place: usize) -> bool {
+        let is_same = |state: &BodyState| body.role.is_named() && body.id == state.id;
+        if self.world == Some(place) {
+            body.role == Role::World
+        } else {
+            self.state(place).is_some_and(is_same)
+        }
+    }
+
     /// The settings and what concerns no single body; each body once, in the order of their places.
     fn check(&self) -> Result<(), SimulationError> {
         self.options.check()?;
@@ -112,6 +128,24 @@ impl Simulation {
         }
     }
 
+    /// Takes out what a snapshot does not have: bodies that were added since, and the world where it has another place, or none.
+    fn make_way(&mut self, snapshot: &Snapshot) {
+        for place in (0..self.bodies.len()).rev() {
+            // Free places at the end go with the last one that is cleared.
+            let Some(body) = self.bodies.get(place) else { continue };
+            if body.role == Role::Vacant || snapshot.has(body, place) {
+                continue;
+            }
+            if body.role.is_named() {
+                self.generations[place] += 1;
+            }
+            if self.world == Some(place) {
+                self.world = None;
+            }
+            self.clear_out(place);
+        }
+    }
+
     /// Goes back to a state of this simulation, or of one with the same bodies. Bodies and joints that were added since are gone, joints that
     /// were taken out are there again; names of bodies that are gone never mean others. Segments begin anew there.
     ///
@@ -140,37 +174,22 @@ impl Simulation {
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), SimulationError> {
         snapshot.check()?;
         let mut next = self.clone();
+        next.make_way(snapshot);
         if snapshot.world.is_some() {
             next.world_at(snapshot.world)?;
         }
         let mut own_places = BTreeSet::new();
         for state in &snapshot.bodies {
             let place = state.id.index();
-            let is_world = snapshot.world == Some(place);
             let missing = SimulationError::Snapshot { place };
-            let own = next.bodies.get_mut(place).filter(|own| {
-                let is_same = own.role.is_named() && own.id == state.id;
-                if is_world { own.role == Role::World } else { is_same }
-            });
-            let own = own.ok_or(missing)?;
+            let own = next.bodies.get_mut(place).filter(|own| snapshot.has(own, place)).ok_or(missing)?;
             *own = state.restored(own, snapshot.time)?;
-            if is_world || state.is_of(own) {
+            own.id = state.id;
+            if snapshot.world == Some(place) || state.is_of(own) {
                 own_places.insert(place);
             }
         }
-        let is_kept = |place: usize| {
-            snapshot.bodies.binary_search_by_key(&place, |state: &BodyState| state.id.index()).is_ok()
-        };
-        for place in (0..next.bodies.len()).rev().filter(|&place| !is_kept(place)) {
-            // Free places at the end go with the last one that is cleared.
-            let role = next.bodies.get(place).map_or(Role::Vacant, |body| body.role);
-            if role.is_named() {
-                next.generations[place] += 1;
-            }
-            if role != Role::Vacant {
-                next.clear_out(place);
-            }
-        }
+        let is_kept = |place: usize| snapshot.state(place).is_some();
         let is_whole = |&[a, b]: &[usize; 2]| a < b && is_kept(a) && is_kept(b);
         for joint in snapshot.joints.iter().filter(|joint| !joint.is_gone()) {
             if let Some(&place) = joint.bodies.iter().find(|&&place| !is_kept(place)) {

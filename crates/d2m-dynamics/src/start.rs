@@ -11,6 +11,7 @@ use crate::{Simulation, SimulationError, StepError};
 use d2m_bvh::{Distance, PairCache, StartState};
 use d2m_world::{Aabb, BoxTree};
 use glam::{DMat3, DVec3};
+use std::collections::BTreeSet;
 
 /// Bodies that touch are moved this far apart before anything flies, of their size or their distance from the origin if that is more:
 /// 2⁻³⁶, of which a query still resolves a half with a tolerance of a sixteenth of it, 2⁻⁴¹.
@@ -58,7 +59,9 @@ impl Simulation {
             if touching.is_empty() {
                 break;
             }
-            self.part(&touching);
+            if !self.is_given_way(&touching) {
+                self.part(&touching);
+            }
         }
         let unchecked = core::mem::take(&mut self.unchecked);
         if self.recorder.has_begun() {
@@ -70,6 +73,23 @@ impl Simulation {
             self.recorder.begin(self.time, flights.collect());
         }
         Ok(())
+    }
+
+    /// Bodies that something which nothing moves was put against give way: they count as changed from outside, and are checked again. False: each
+    /// pair has a body that may be moved already.
+    fn is_given_way(&mut self, touching: &[Touch]) -> bool {
+        let may_move = |i: usize| self.bodies[i].is_dynamic() && self.unchecked.contains(&i);
+        let stuck = touching
+            .iter()
+            .map(|touch| [touch.pair.0, touch.pair.1])
+            .filter(|ends| !ends.iter().any(|&i| may_move(i)));
+        let moved: BTreeSet<usize> = stuck.flatten().filter(|&i| self.bodies[i].is_dynamic()).collect();
+        for &i in &moved {
+            self.wake_place(i);
+            self.drop_known(i);
+            self.unchecked.insert(i);
+        }
+        !moved.is_empty()
     }
 
     /// The pairs with a body that is not checked yet and that may be closer than the gap, in the order of the second body.

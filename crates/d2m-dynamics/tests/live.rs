@@ -227,6 +227,32 @@ fn a_wall_that_was_put_elsewhere_is_met_there() {
     }
 }
 
+/// What is put against a body, up to rounding, is accepted, and the body parts from it, also where only that one moves and others are behind it.
+#[test]
+fn what_is_put_against_a_body_parts_from_it() {
+    let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
+    let ids = [0.0, -1.0005].map(|x| {
+        let body = Body::new("cube", cube()).with_position(DVec3::X * x);
+        simulation.add(&body).unwrap()
+    });
+    for _ in 0..20 {
+        simulation.step().unwrap();
+    }
+    let before = simulation.position(ids[0]).x;
+    let wall = Body::new("wall", cube()).with_kind(Kind::Static).with_position(DVec3::X * (before + 1.0));
+    let wall = simulation.add_checked(&wall).unwrap();
+    let mut judge = Judge::default();
+    simulation.finish();
+    for id in [ids[0], ids[1], wall] {
+        judge.knows(id, &cube(), id != wall);
+    }
+    for _ in 0..20 {
+        judge.judge(&simulation.step().unwrap().segments);
+    }
+    judge.judge(&simulation.finish());
+    assert!(judge.judged > 0 && simulation.position(ids[0]).x < before - 5e-4);
+}
+
 /// How far a pair is apart is not how far another pair at the same places is: a thin bar gives its place to a thick one.
 #[test]
 fn distances_of_a_body_that_is_gone_prove_nothing() {

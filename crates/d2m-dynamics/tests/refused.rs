@@ -1,6 +1,6 @@
 //! Bodies and pushes that no simulation can use are refused by name, and change nothing.
 
-use d2m_bvh::MeshTree;
+use d2m_bvh::{MeshTree, Solid, TriMesh};
 use d2m_dynamics::{
     Body, Kind, Mass, MassError, MassProperties, Simulation, SimulationError, SimulationOptions,
 };
@@ -14,6 +14,17 @@ fn cube() -> Body {
 
 fn empty() -> Simulation {
     Simulation::new(SimulationOptions::default()).unwrap()
+}
+
+/// An open mesh holds nothing: that it is to be filled is refused when it is added, not by the step in which something comes near it.
+#[test]
+fn an_open_mesh_is_no_solid() {
+    let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+    let sheet = Arc::new(MeshTree::new(TriMesh::from_arrays(&corners, &[[0, 1, 2]]).unwrap()));
+    let sheet = Body::new("sheet", sheet).with_kind(Kind::Static);
+    let refused = empty().add(&sheet.clone().with_solid(Solid::Filled)).unwrap_err();
+    assert!(refused.to_string().starts_with("body sheet: solid "), "{refused}");
+    empty().add(&sheet.with_solid(Solid::Surface)).unwrap();
 }
 
 #[test]

@@ -4,8 +4,8 @@ mod ground;
 
 use d2m_bvh::{MeshTree, Mode, QueryOptions, StartState, TriMesh, Window};
 use d2m_dynamics::{
-    Body, BodyId, Joint, Kind, Mass, MassProperties, Part, Presence, RayAnswer, Simulation, SimulationError,
-    SimulationOptions, TouchChange,
+    Body, BodyId, Groups, Joint, Kind, Mass, MassProperties, Part, Presence, RayAnswer, Simulation,
+    SimulationError, SimulationOptions, TouchChange,
 };
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::ConstantTwist;
@@ -41,6 +41,27 @@ fn touches_begin_and_end_once() {
         matches!(events[..], [event] if event.change == TouchChange::Ended && event.b == body),
         "{events:?}"
     );
+}
+
+/// What a sensor no longer looks for has left it.
+#[test]
+fn a_sensor_forgets_what_it_does_not_look_for() {
+    let changes: [fn(&mut Simulation, [BodyId; 2]); 2] = [
+        |simulation, [zone, body]| simulation.ignore(zone, body),
+        |simulation, [zone, _]| simulation.set_groups(zone, Groups { meets: 0, ..Groups::ALL }).unwrap(),
+    ];
+    for change in changes {
+        let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
+        let zone = Body::new("zone", cube()).with_kind(Kind::Static).with_presence(Presence::Sensor);
+        let zone = simulation.add(&zone).unwrap();
+        let body = simulation.add(&Body::new("body", tree("box?x=0.1&y=0.1&z=0.1"))).unwrap();
+        let began = simulation.step().unwrap().touches;
+        assert!(matches!(began[..], [event] if event.change == TouchChange::Began), "{began:?}");
+        change(&mut simulation, [zone, body]);
+        let ended = simulation.step().unwrap().touches;
+        assert!(matches!(ended[..], [event] if event.change == TouchChange::Ended), "{ended:?}");
+        assert!(!simulation.touch(zone, body) && simulation.step().unwrap().touches.is_empty());
+    }
 }
 
 /// A zone knows who is in it, to the time: also who passes within a step, who rests in it, who was put into it, and who is gone.

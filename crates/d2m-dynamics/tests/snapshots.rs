@@ -58,6 +58,40 @@ fn snapshots_survive_additions() {
     assert_eq!(simulation.restore(&snapshot), Err(SimulationError::Snapshot { place: b.index() }));
 }
 
+/// What stands for the world of joints may have another place than in the snapshot, or its own may have gone to a body since.
+#[test]
+fn the_world_of_a_snapshot_has_its_place_again() {
+    let free = || Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
+    let mut simulation = free();
+    let hung = simulation.add(&Body::new("hung", cube())).unwrap();
+    let first = simulation.snapshot();
+    let others =
+        [3.0, 6.0].map(|x| simulation.add(&Body::new("", cube()).with_position(DVec3::X * x)).unwrap());
+    let joint = Joint::new(JointKind::Spherical, hung, None, DVec3::Y);
+    simulation.add_joint(&joint).unwrap();
+    for id in others {
+        assert!(simulation.remove(id));
+    }
+    let last = simulation.snapshot();
+    // Nothing at the world's place, nor before it.
+    simulation.restore(&first).unwrap();
+    simulation.restore(&last).unwrap();
+    assert_eq!(simulation.snapshot(), last);
+    // Bodies at its place and before it, and another world after them.
+    simulation.restore(&first).unwrap();
+    let added =
+        [3.0, 6.0, 9.0].map(|x| simulation.add(&Body::new("", cube()).with_position(DVec3::X * x)).unwrap());
+    simulation.add_joint(&joint).unwrap();
+    simulation.restore(&last).unwrap();
+    assert_eq!(simulation.snapshot(), last);
+    assert!(added.into_iter().all(|id| !simulation.contains(id)) && simulation.len() == 1);
+    let next = simulation.add(&Body::new("next", cube()).with_position(DVec3::X * 3.0)).unwrap();
+    assert!(next.index() == 1 && !added.contains(&next) && !others.contains(&next));
+    simulation.apply_impulse(hung, DVec3::X * 100.0, DVec3::ZERO).unwrap();
+    simulation.step().unwrap();
+    assert!((simulation.pose(hung).transform_point(DVec3::Y) - DVec3::Y).length() < 1e-6);
+}
+
 /// A snapshot of other bodies is checked: it may have them in each other.
 #[test]
 fn snapshots_of_other_bodies_are_checked() {

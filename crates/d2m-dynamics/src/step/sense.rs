@@ -20,11 +20,20 @@ impl Step<'_> {
             .flat_map(|sensor| of(Role::Body).map(move |body| (sensor.min(body), sensor.max(body))))
             .filter(|&(a, b)| sim.is_admitted(a, b))
             .collect();
+        // What a sensor no longer looks for is in it no more.
+        let is_left = |&&(a, b): &&(usize, usize)| {
+            [a, b].into_iter().any(|i| sim.bodies[i].role == Role::Sensor) && !sim.is_admitted(a, b)
+        };
+        let left: Vec<(usize, usize)> = sim.touching.iter().filter(is_left).copied().collect();
+        for pair in left {
+            self.sim.end_touch(pair, from);
+        }
         let Ok(window) = Window::try_new(from, until) else { return Ok(()) };
         if pairs.is_empty() || window.length() == 0.0 {
             return Ok(());
         }
-        let node_tests = sim.options.node_tests;
+        let node_tests = self.sim.options.node_tests;
+        let sim = &*self.sim;
         let found = map_owned(pairs, FEW_ITEMS, |pair| {
             (pair, spans(&sim.bodies[pair.0], &sim.bodies[pair.1], window, node_tests))
         });
