@@ -501,3 +501,30 @@ fn a_gap_below_the_tolerance_is_a_distance() {
         assert_eq!([found.lower, found.upper], [0.0; 2], "{found:?}");
     }
 }
+
+/// Where rounding resolves no less than is asked for, spans of contact say so, as contacts do; also of bodies with radii.
+#[test]
+fn spans_of_contact_state_the_tolerance_that_rounding_leaves() {
+    let tree = MeshTree::new(Surface::cube(0.5).into_mesh(TriMesh::try_new));
+    let through = ConstantTwist::REST.with_position(DVec3::X * -3.0).with_linear_velocity(DVec3::X * 6.0);
+    for (radius, asked) in [(0.0, 1e-30), (0.0, 1e-9), (0.1, 1e-30)] {
+        let [a, b] =
+            [&through, &ConstantTwist::REST].map(|motion| Moving::new(&tree, motion).with_radius(radius));
+        let options = QueryOptions::default().with_tolerance(asked);
+        let spans = contact_spans(a, b, Window::UNIT, &options, None).unwrap();
+        let found = time_of_contact(a, b, Window::UNIT, &options).unwrap();
+        let tolerance = found.contact().unwrap().tolerance;
+        let contact = spans[1];
+        assert_eq!(contact.status, SpanStatus::Contact);
+        assert!(
+            contact.tolerance >= asked && (contact.tolerance > asked) == (tolerance > asked),
+            "{spans:?} {found:?}"
+        );
+        assert!(contact.tolerance <= 2.0 * tolerance, "{spans:?} {found:?}");
+        // The walk's level is that tolerance.
+        for end in [contact.from, contact.to] {
+            let apart = sampled(&a, &b, end) - 2.0 * radius;
+            assert!(apart <= 3.4 * contact.tolerance + 1e-15, "{apart} {spans:?}");
+        }
+    }
+}

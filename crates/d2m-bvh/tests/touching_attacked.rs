@@ -1,11 +1,11 @@
 //! Bodies that were said to overlap though they touch, or to touch though they overlap: found by an adversary.
 
 use d2m_bvh::{
-    Budget, MeshTree, Moving, Posed, QueryOptions, Solid, StartState, TriMesh, Window, distance,
+    Budget, MeshTree, Moving, Posed, QueryOptions, Solid, StartState, TriMesh, Window, departure, distance,
     time_of_contact,
 };
-use d2m_motion::{ConstantTwist, Pose};
-use d2m_testing::{Draw, KnuthRandom};
+use d2m_motion::{ConstantTwist, Pose, RigidMotion};
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
 use std::collections::BTreeSet;
 
@@ -182,4 +182,44 @@ fn a_start_that_a_budget_leaves_undecided_keeps_its_separation() {
         undecided += usize::from(contact.start == StartState::Undecided);
     }
     assert!(undecided > 0);
+}
+
+/// Whatever triangles a search within a minimum separation reports: rounded bodies that begin in each other overlap, others touch. The same is said
+/// of the start of a departure.
+#[test]
+fn rounded_bodies_overlap_where_their_radii_meet() {
+    let mut random = KnuthRandom(17);
+    let stone = MeshTree::new(Surface::wavy_torus(16, 8, 0.3).into_mesh(TriMesh::try_new));
+    let point = MeshTree::new(TriMesh::point(DVec3::ZERO).unwrap());
+    let radius = |tree: &MeshTree| tree.radius();
+    let (mut touching, mut overlapping) = (0, 0);
+    for k in 0..1600 {
+        let s = [0.0, 0.1, 0.3][k % 3];
+        let radii = [[0.0, 0.2], [0.1, 0.2]][k / 3 % 2];
+        let way = random.vector().normalize();
+        let apart = radius(&stone) + 0.6 * random.unit();
+        let motion = ConstantTwist::REST.with_position(way * apart).with_angular_velocity(DVec3::X);
+        let other = if k % 2 == 0 { &point } else { &stone };
+        let motion = if k % 2 == 0 { motion } else { motion.with_position(way * (apart + radius(&stone))) };
+        let a = Moving::new(&stone, &ConstantTwist::REST).with_radius(radii[0]);
+        let b = Moving::new(other, &motion).with_radius(radii[1]);
+        let options = QueryOptions::default().with_min_separation(s);
+        let at_start = Posed::new(other, motion.pose_and_twist(0.0).0);
+        let found = distance(Posed::at_rest(&stone), at_start, Solid::Surface).unwrap().with_radii(radii);
+        let Some(contact) = time_of_contact(a, b, Window::UNIT, &options).unwrap().contact().copied() else {
+            continue;
+        };
+        if contact.start == StartState::Apart {
+            continue;
+        }
+        let expected = match found.state {
+            StartState::Apart => StartState::Touching,
+            state => state,
+        };
+        assert_eq!(contact.start, expected, "{k}: {contact:?} {found:?}");
+        assert_eq!(departure(a, b, Window::UNIT, &options).unwrap().start, expected, "{k}");
+        touching += u32::from(expected == StartState::Touching);
+        overlapping += u32::from(expected == StartState::Overlapping);
+    }
+    assert!(touching > 20 && overlapping > 20, "{touching} {overlapping}");
 }

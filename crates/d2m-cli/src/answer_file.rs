@@ -123,6 +123,8 @@ impl AnswerFile<'_> {
         if !["contact", "separated", "undecided"].contains(&about.status.as_str()) {
             return Err(self.fault("status", format!("{:?} is none of an answer", about.status)));
         }
+        // Bodies that never part have left at no time.
+        let is_leaving = object.get("left").is_some();
         let left = about.left.map(|[lo, hi]| json!([lo, hi]));
         let start = about.start.unwrap_or(StartState::Apart);
         // After bodies have parted they are apart; what is said of the start is said of the window.
@@ -144,14 +146,12 @@ impl AnswerFile<'_> {
                 }
             }
         }
-        let mut promises = vec![match left {
-            Some(left) => {
-                let departure = json!({ "start": start, "left": left, "answer": answer });
-                let departure =
-                    serde_json::from_value(departure).map_err(|error| self.fault("left", error))?;
-                Promise::Departure(departure)
-            }
-            None => Promise::Contact(answer),
+        let mut promises = vec![if is_leaving {
+            let departure = json!({ "start": start, "left": left, "answer": answer });
+            let departure = serde_json::from_value(departure).map_err(|error| self.fault("left", error))?;
+            Promise::Departure(departure)
+        } else {
+            Promise::Contact(answer)
         }];
         if let Some([lower, upper]) = about.clearance {
             self.check("clearance", answer.is_separated())?;

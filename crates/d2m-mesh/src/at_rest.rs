@@ -3,6 +3,6 @@
 
 pub use crate::resting::collide::{is_contained, some_colliding_pairs};
 pub use crate::resting::containment::{Held, held_vertex};
-pub use crate::resting::distance::{Nearness, near_pair};
+pub use crate::resting::distance::{Nearness, bound_distance_metered, near_pair};
 pub use crate::resting::touching::inside::{holds, middle_of_boxes};
 pub use crate::resting::touching::{Meeters, Meeting, Touch};

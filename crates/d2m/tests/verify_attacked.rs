@@ -60,6 +60,64 @@ impl Pair<'_> {
     }
 }
 
+/// A span of contact holds to the tolerance that it states, and that is no more than rounding needs.
+#[test]
+fn a_span_of_contact_is_proven_to_its_tolerance() {
+    let tree = tetrahedron();
+    let through = along_x(-3.0, 6.0).with_position(DVec3::new(-3.0, -0.1, -0.05));
+    let pair = Pair { tree: &tree, motion: &through };
+    let [a, b] = pair.bodies();
+    let options = QueryOptions::default();
+    let honest = pair.spans();
+    let is_proven = |spans: &[ContactSpan]| {
+        let verdict = pair.verifier().contact_spans(&[a, b], Window::UNIT, &options, None, spans, STEPS);
+        matches!(verdict, Verdict::Verified { .. })
+    };
+    assert!(honest[1].status == SpanStatus::Contact && honest[1].tolerance < 1e-9, "{honest:?}");
+    assert!(is_proven(&honest), "{honest:?}");
+    for tolerance in [1e-6, 1.0, f64::INFINITY, f64::NAN, -1.0] {
+        let mut lie = honest.clone();
+        lie[1] = lie[1].with_tolerance(tolerance);
+        assert!(!is_proven(&lie), "{lie:?}");
+    }
+}
+
+/// Bodies that part, meet again and part: that they only left at last, in a narrow bracket or a wide one, or never, passes over a contact.
+#[test]
+fn a_meeting_before_bodies_have_left_is_not_passed_over() {
+    let tree = tetrahedron();
+    let options = QueryOptions::default();
+    let aside = DVec3::new(0.0, -0.1, -0.05);
+    let at = |time: f64, x: f64| (time, Pose { translation: aside + DVec3::X * x, ..Pose::IDENTITY });
+    // In contact up to x = 1.
+    let swings = [at(0.0, 0.5), at(0.25, 1.5), at(0.5, 0.5), at(0.75, 1.5), at(1.0, 0.5)];
+    let swings = Keyframes::try_new(&swings, Span::Linear).unwrap();
+    let pair = Pair { tree: &tree, motion: &swings };
+    let [a, b] = pair.bodies();
+    let is_proven = |window: Window, answer: &Departure| {
+        let verdict = pair.verifier().departure(&[a, b], window, &options, answer, STEPS);
+        matches!(verdict, Verdict::Verified { .. })
+    };
+    let all = |to: f64| Window::try_new(0.0, to).unwrap();
+    let window = all(0.7);
+    let honest = departure(a, b, window, &options).unwrap();
+    let again = departure(a, b, Window::try_new(0.5, 0.7).unwrap(), &options).unwrap();
+    let (first, last) = (honest.left.unwrap(), again.left.unwrap());
+    assert!(is_proven(window, &honest) && first.hi < 0.13 && honest.answer.contact().is_some(), "{honest:?}");
+    for lo in [last.lo, first.lo, 0.0] {
+        let mut lie = again;
+        (lie.start, lie.left) = (honest.start, Some(TimeBracket { lo, hi: last.hi }));
+        assert!(lie.answer.is_separated() && !is_proven(window, &lie), "{lie:?}");
+    }
+    // They are in contact at the start and at the end, and not between.
+    let mut never = honest;
+    (never.left, never.answer) = (None, time_of_contact(a, b, all(0.5), &options).unwrap());
+    assert!(!is_proven(all(0.5), &never), "{never:?}");
+    // What stays all the time is proven to.
+    let stays = departure(a, b, all(0.1), &options).unwrap();
+    assert!(stays.left.is_none() && is_proven(all(0.1), &stays), "{stays:?}");
+}
+
 /// Bodies that part for a moment, at no round time: a claim that they are in contact all the time.
 #[test]
 fn a_moment_in_which_bodies_are_clear_is_found_in_a_long_span_of_contact() {

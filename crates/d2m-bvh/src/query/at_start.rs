@@ -1,5 +1,6 @@
 //! How bodies that are in contact at the start of a window meet there: do they touch, or do they overlap?
 
+use super::rounded::Rounded;
 use super::true_poses::PlacedTriangles;
 use crate::{
     Answered, Contact, Evidence, Meter, Moving, Posed, QueryError, QueryOptions, Solid, StartState,
@@ -7,7 +8,7 @@ use crate::{
 };
 use d2m_feature::{FeaturePair, TriangleDistance, TriangleFeature};
 use d2m_lanes::UP;
-use d2m_mesh::at_rest::{Meeters, Meeting};
+use d2m_mesh::at_rest::{Meeters, Meeting, bound_distance_metered};
 use d2m_mesh::margin::length;
 use d2m_motion::Pose;
 use glam::{DMat3, DVec3};
@@ -42,7 +43,9 @@ pub(super) fn judge(
         return Ok(contact);
     }
     let solids = bodies.map(|body| body.solid_in(options));
-    let Some(meeting) = meeting_at(bodies, solids, time, meter)? else { return Ok(contact) };
+    let Some(meeting) = meeting_at(bodies, solids, time, meter)? else {
+        return nearest_of_rounded(contact, bodies, meter);
+    };
     Ok(match meeting {
         Meeting::Touching(touch) => {
             let found = of_pair(contact, bodies, touch.triangles, touch.normal);
@@ -63,6 +66,30 @@ pub(super) fn judge(
         }
         // The separation is still that of the reported triangles.
         Meeting::Undecided => Contact { start: StartState::Undecided, ..contact },
+    })
+}
+
+/// The contact of bodies whose meshes are apart, as that of the nearest triangles if these are within the radii: a search that a minimum
+/// separation ends, or one that ends early, reports any two that are near enough, while others may be further in each other.
+fn nearest_of_rounded(
+    contact: Contact,
+    bodies: &[Moving<'_>; 2],
+    meter: &mut Meter,
+) -> Result<Contact, QueryError> {
+    let [least, most] = Rounded { radii: bodies.map(|body| body.radius) }.sums();
+    if most == 0.0 {
+        return Ok(contact);
+    }
+    let pose = |body: &Moving<'_>| body.motion.pose_and_twist(contact.time_lo).0;
+    let posed = [0, 1].map(|k| Posed::new(bodies[k].body, pose(&bodies[k])));
+    let found = bound_distance_metered(posed, [Solid::Surface; 2], meter)?;
+    let triangles = [found.triangle_a, found.triangle_b];
+    Ok(match found.distance {
+        Some(nearest) if nearest.lower >= most => contact,
+        Some(nearest) => of_pair(contact, bodies, triangles, nearest.normal),
+        None if found.upper < least => of_pair(contact, bodies, triangles, contact.normal),
+        // The budget has ended before it is known.
+        None => Contact { start: StartState::Undecided, ..contact },
     })
 }
 

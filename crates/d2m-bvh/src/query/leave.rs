@@ -124,7 +124,8 @@ pub(super) fn of_departing(
     let mut walk = Walk::new([a, b], window, options, tolerance, resolution);
     let (left, answer) = parting(&mut walk, &first)?;
     let spent = SearchCounts { node_tests: walk.meter.spent(), ..SearchCounts::default() };
-    Ok(Answered { answer: Departure { start: first.start, left, answer }, work: work.with(&spent) })
+    let start = Rounded { radii: bodies.map(|body| body.radius) }.start(&first);
+    Ok(Answered { answer: Departure { start, left, answer }, work: work.with(&spent) })
 }
 
 /// The options of another search, with a smaller tolerance, where one stopped at the start of the window although the bodies are proven

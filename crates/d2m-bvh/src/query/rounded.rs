@@ -27,8 +27,13 @@ impl Rounded {
 
     /// Both radii, not less than their sum.
     pub(super) fn sum(&self) -> f64 {
+        self.sums()[1]
+    }
+
+    /// Both radii: not more and not less than their sum.
+    pub(super) fn sums(&self) -> [f64; 2] {
         let [a, b] = self.radii;
-        if a == 0.0 || b == 0.0 { a + b } else { (a + b).next_up() }
+        if a == 0.0 || b == 0.0 { [a + b; 2] } else { [(a + b).next_down(), (a + b).next_up()] }
     }
 
     fn are_none(&self) -> bool {
@@ -57,6 +62,12 @@ impl Rounded {
         Ok(options.with_tolerance(tolerance).with_min_separation(separation))
     }
 
+    /// The tolerance of the rounded bodies: the sum of the radii and the separation are rounded twice.
+    pub(super) fn tolerance(&self, of_meshes: f64) -> f64 {
+        let [a, b] = self.radii;
+        if self.are_none() { of_meshes } else { (of_meshes + 4.0 * f64::EPSILON * (a + b)) * UP }
+    }
+
     /// The answer of that query as one about the rounded bodies.
     pub(super) fn answer(&self, answer: TimeOfContact) -> TimeOfContact {
         match answer {
@@ -67,24 +78,27 @@ impl Rounded {
         }
     }
 
+    /// How the rounded bodies stand at the start, by the contact of their meshes there: where these are nearer to each other than the radii reach
+    /// the insides of what is within those of them overlap.
+    pub(super) fn start(&self, contact: &Contact) -> StartState {
+        match contact.start {
+            start @ (StartState::Apart | StartState::Contained) => start,
+            _ if contact.separation < self.sums()[0] => StartState::Overlapping,
+            start => start,
+        }
+    }
+
     fn contact(&self, contact: Contact) -> Contact {
         if contact.start == StartState::Contained {
             return contact;
         }
         let [a, b] = self.radii;
-        // Meshes that are nearer to each other than the radii reach: the insides of what is within those of them overlap.
-        let start = match contact.start {
-            StartState::Apart => StartState::Apart,
-            _ if contact.separation + contact.tolerance < self.sum() => StartState::Overlapping,
-            start => start,
-        };
         Contact {
-            start,
+            start: self.start(&contact),
             point_a: contact.point_a + contact.normal * a,
             point_b: contact.point_b - contact.normal * b,
             separation: (contact.separation - self.sum()).max(0.0),
-            // The sum of the radii and the separation are rounded twice.
-            tolerance: (contact.tolerance + 4.0 * f64::EPSILON * (a + b)) * UP,
+            tolerance: self.tolerance(contact.tolerance),
             ..contact
         }
     }

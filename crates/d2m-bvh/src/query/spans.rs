@@ -39,7 +39,7 @@ const RESOLUTION: f64 = 1e-6;
 pub enum SpanStatus {
     /// Proven further apart than `min_separation` at every time of the closed span.
     Clear,
-    /// Proven within L = `min_separation` + δ at times of the span that are no more than the resolution apart, and no more than that from
+    /// Proven within L = `min_separation` + δ, with δ the span's tolerance, at times of the span that are no more than the resolution apart, and no more than that from
     /// its ends.
     Contact,
     /// Neither is proven.
@@ -74,17 +74,31 @@ pub struct ContactSpan {
     pub to: f64,
     /// What is known.
     pub status: SpanStatus,
+    /// δ: that of the query, or more in a span of contact where rounding, or enclosures of the motions, resolve no less.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub tolerance: f64,
 }
 
 impl ContactSpan {
-    /// A span from one time to another with what is known of it.
+    /// A span from one time to another with what is known of it, and with the tolerance of the query.
     ///
     /// ```
     /// use d2m_bvh::{ContactSpan, SpanStatus};
     /// assert_eq!(ContactSpan::new(0.0, 0.5, SpanStatus::Clear).to, 0.5);
     /// ```
     pub const fn new(from: f64, to: f64, status: SpanStatus) -> Self {
-        Self { from, to, status }
+        Self { from, to, status, tolerance: 0.0 }
+    }
+
+    /// With this tolerance.
+    ///
+    /// ```
+    /// use d2m_bvh::{ContactSpan, SpanStatus};
+    /// assert_eq!(ContactSpan::new(0.0, 0.5, SpanStatus::Contact).with_tolerance(1e-9).tolerance, 1e-9);
+    /// ```
+    #[must_use]
+    pub const fn with_tolerance(self, tolerance: f64) -> Self {
+        Self { tolerance, ..self }
     }
 }
 
@@ -140,7 +154,7 @@ pub fn contact_spans(
     let mut search =
         Search { walk, wanted: tolerance, tolerance, spans: Vec::new(), now: window.start(), within: None };
     search.run()?;
-    Ok(search.spans)
+    Ok(search.spans.into_iter().map(|span| span.with_tolerance(rounded.tolerance(span.tolerance))).collect())
 }
 
 /// What is known of the bodies where a search begins.
@@ -328,9 +342,12 @@ impl Search<'_> {
             let claimed = Claimed { from, to, distance: self.walk.options.min_separation };
             conclude_apart(Place::ClearSpan, &self.walk.bodies, claimed);
         }
+        let tolerance = if status == SpanStatus::Contact { self.tolerance } else { self.wanted };
         match self.spans.last_mut() {
-            Some(last) if last.status == status => last.to = to,
-            _ => self.spans.push(ContactSpan { from, to, status }),
+            Some(last) if last.status == status => {
+                (last.to, last.tolerance) = (to, last.tolerance.max(tolerance));
+            }
+            _ => self.spans.push(ContactSpan { from, to, status, tolerance }),
         }
         self.now = to;
     }

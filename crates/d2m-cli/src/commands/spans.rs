@@ -117,7 +117,11 @@ fn word(status: SpanStatus) -> &'static str {
 }
 
 fn to_json(span: &ContactSpan) -> Value {
-    json!({ "from": span.from, "to": span.to, "status": word(span.status) })
+    let mut object = json!({ "from": span.from, "to": span.to, "status": word(span.status) });
+    if span.status == SpanStatus::Contact {
+        object["tolerance"] = json!(span.tolerance);
+    }
+    object
 }
 
 fn to_text(spans: &[ContactSpan]) -> String {

@@ -163,15 +163,19 @@ pub fn join_spans(window: Window, pairs: &[PairSpans]) -> Vec<ContactSpan> {
     for span in times.windows(2) {
         let [from, to] = [span[0], span[1]];
         // Spans of a pair end where the next one begins, so one of them holds all of this.
-        let status_of = |pair: &PairSpans| {
+        let holding = |pair: &PairSpans| {
             let holding = pair.spans.iter().filter(|of| of.from <= from && to <= of.to);
-            holding.map(|of| of.status).max_by_key(|status| rank(*status)).unwrap_or(SpanStatus::Undecided)
+            let found = holding.max_by_key(|of| rank(of.status)).copied();
+            found.unwrap_or(ContactSpan::new(from, to, SpanStatus::Undecided))
         };
-        let status =
-            pairs.iter().map(status_of).max_by_key(|status| rank(*status)).unwrap_or(SpanStatus::Clear);
+        let of_pairs: Vec<ContactSpan> = pairs.iter().map(holding).collect();
+        let status = of_pairs.iter().map(|of| of.status).max_by_key(|status| rank(*status));
+        let status = status.unwrap_or(SpanStatus::Clear);
+        let tolerances = of_pairs.iter().filter(|of| of.status == status).map(|of| of.tolerance);
+        let tolerance = tolerances.fold(0.0, f64::max);
         match joined.last_mut().filter(|last| last.status == status) {
-            Some(last) => last.to = to,
-            None => joined.push(ContactSpan::new(from, to, status)),
+            Some(last) => (last.to, last.tolerance) = (to, last.tolerance.max(tolerance)),
+            None => joined.push(ContactSpan::new(from, to, status).with_tolerance(tolerance)),
         }
     }
     joined

@@ -9,8 +9,11 @@ use d2m_bvh::{ClearanceStatus, Evidence};
 
 /// The separation that may be left above s, in tolerances.
 const MOST_LEFT: f64 = 3.3;
-/// The resolution of spans as a part of the window, if none is given.
+/// The resolution of spans as a part of the window, if none is given, and that at which bodies that stay in contact are watched.
 const RESOLUTION: f64 = 1e-6;
+/// The separation above s up to which bodies have not left each other for certain, in tolerances: they have where they are proven further apart
+/// than 3 of them, of which a search that stops knows as much as [`MOST_LEFT`] less; and steps from time to time there may double that.
+const NOT_LEFT: f64 = 2.0 * (3.0 + MOST_LEFT);
 /// The width of a clearance in tolerances, where that is more than its accuracy.
 const WIDTH: f64 = 4.0;
 
@@ -111,8 +114,8 @@ fn meeting(contact: &Contact, options: &QueryOptions, evidence: Evidence) -> Opt
     })
 }
 
-/// What an answer of [`departure`](crate::departure) claims. That bodies which never part are in contact all the time is sampled by the engine
-/// and claimed of both ends of the window only.
+/// What an answer of [`departure`](crate::departure) claims. Until they have left, or to the end of the window, the bodies are near each other in
+/// each part of the time that is as long as the engine's samples are apart: a contact after they had parted is not passed over in silence.
 ///
 /// # Errors
 /// As [`claim`].
@@ -128,6 +131,14 @@ pub fn departure_claim(
         distance: options.min_separation + scale.most,
         triangles: None,
     };
+    // No shorter than two numbers for a time are apart.
+    let clock = window.start().abs().max(window.end().abs());
+    let every = (RESOLUTION * window.length()).max(2.0 * (clock.next_up() - clock));
+    let stay_until = |to: f64| Claim::Often {
+        span: TimeSpan { from: window.start(), to },
+        distance: options.min_separation + NOT_LEFT * scale.most,
+        every,
+    };
     let mut claims = Vec::new();
     match answer.start {
         StartState::Apart => {}
@@ -137,7 +148,7 @@ pub fn departure_claim(
     let Some(left) = answer.left else {
         claims.push(claim(bodies, window, options, &answer.answer)?);
         if answer.answer.contact().is_some() {
-            claims.push(within(window.end()));
+            claims.extend([within(window.end()), stay_until(window.end())]);
         }
         return Ok(Claim::All(claims));
     };
@@ -154,6 +165,7 @@ pub fn departure_claim(
         claims.push(within(left.lo));
         // Further apart than s + δ, with δ at least as it was asked for.
         claims.push(Claim::Clear { span: at(left.hi), distance: options.min_separation + scale.asked });
+        claims.push(stay_until(left.hi));
     }
     let rest = Window::try_new(left.hi, window.end()).map_err(|_| Reason::Malformed)?;
     claims.push(claim(bodies, rest, options, &answer.answer)?);
@@ -244,10 +256,9 @@ pub fn spans_claim(
     if !(covers && resolution >= 0.0 && resolution.is_finite()) {
         return Err(Reason::Malformed);
     }
-    let within = |from: f64, to: f64, tolerances: f64| {
-        let distance = options.min_separation + tolerances * Scale::new(bodies, window, options, to).most;
+    let within = |from: f64, to: f64, above: f64| {
         let span = TimeSpan { from: from.max(window.start()), to: to.min(window.end()) };
-        Claim::Within { span, distance, triangles: None }
+        Claim::Within { span, distance: options.min_separation + above, triangles: None }
     };
     let mut claims = Vec::new();
     for (index, span) in answer.iter().enumerate() {
@@ -256,16 +267,23 @@ pub fn spans_claim(
                 let time = TimeSpan { from: span.from, to: span.to };
                 claims.push(Claim::Clear { span: time, distance: options.min_separation });
                 if answer.get(index + 1).is_some_and(|next| next.status == SpanStatus::Contact) {
-                    claims.push(within(span.to, span.to, MOST_LEFT));
+                    let most = Scale::new(bodies, window, options, span.to).most;
+                    claims.push(within(span.to, span.to, MOST_LEFT * most));
                 }
             }
             SpanStatus::Contact => {
-                let near = |time: f64| within(time - resolution, time + resolution, 1.0);
+                // At either end rounding may be the greater one.
+                let scales = [span.from, span.to].map(|time| Scale::new(bodies, window, options, time));
+                if scales.iter().all(|scale| scale.accept(span.tolerance).is_err()) {
+                    return Err(Reason::Tolerance);
+                }
+                // What is within the level was found with the engine's own roundings.
+                let above = span.tolerance.max(scales[0].asked) + scales[0].error.max(scales[1].error);
+                let near = |time: f64| within(time - resolution, time + resolution, above);
                 claims.extend([near(span.from), near(span.to)]);
-                let scale = Scale::new(bodies, window, options, span.to);
                 claims.push(Claim::Often {
                     span: TimeSpan { from: span.from, to: span.to },
-                    distance: options.min_separation + scale.most,
+                    distance: options.min_separation + above,
                     every: resolution,
                 });
             }

@@ -12,7 +12,7 @@
 //! | … overlapping at the start | within δ of each other then (`Crossing`: they share a point) |
 //! | … contained | a body holds a part of the other at the start |
 //! | … with evidence | within s (`Crossing`) or s + δ (`Near`) at some time of the bracket |
-//! | [`Departure`] | within s + δ at the start and at `left.lo`, further apart at `left.hi`, and its answer from there on |
+//! | [`Departure`] | within s + δ at the start and at `left.lo`, further apart at `left.hi`, and its answer from there on; until then (or the end of the window) within s + 13 δ at times no more than 1e-6 of the window apart |
 //! | … contained at the start | a body holds a part of the other then |
 //! | … apart at the start | further apart than s then, where the answer begins |
 //! | [`Clearance`] | nowhere below `lower`, at most `upper` at `time`, and no wider than was asked for; bodies that meet are as near at `time` as at a time of contact |

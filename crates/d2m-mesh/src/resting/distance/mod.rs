@@ -306,10 +306,33 @@ pub fn bound_distance(
     solids: impl Into<[Solid; 2]>,
     budget: &Budget,
 ) -> Result<DistanceBounds, QueryError> {
-    let solids = solids.into();
+    bound_distance_metered([a, b], solids.into(), &mut Meter::new(budget))
+}
+
+/// As [`bound_distance`], with what a meter has left.
+///
+/// ```
+/// use d2m_mesh::at_rest::bound_distance_metered;
+/// use d2m_mesh::{Budget, MeshTree, Meter, Posed, Solid, TriMesh};
+/// use glam::DVec3;
+/// let points = [0.0, 2.0].map(|x| TriMesh::point(DVec3::X * x).map(MeshTree::new));
+/// let [a, b] = points;
+/// let (a, b) = (a?, b?);
+/// let mut meter = Meter::new(&Budget::UNLIMITED);
+/// let found = bound_distance_metered([Posed::at_rest(&a), Posed::at_rest(&b)], [Solid::Surface; 2], &mut meter)?;
+/// assert!(found.lower <= 2.0 && 2.0 <= found.upper && found.distance.is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`distance`].
+pub fn bound_distance_metered(
+    [a, b]: [Posed<'_>; 2],
+    solids: [Solid; 2],
+    meter: &mut Meter,
+) -> Result<DistanceBounds, QueryError> {
     check_solids(a, b, solids)?;
     let scene = RestingScene::try_new(a, b)?;
-    let meter = &mut Meter::new(budget);
     // Some pair is compared before the budget counts, so there always is an upper bound.
     let first = Some([0, 0]);
     let found = run(Search { scene: &scene, first, limit: f64::INFINITY, slack: 0.0, meter });
