@@ -251,6 +251,38 @@ fn fast_tops_keep_their_energy() {
     assert!(worst < 1e-3, "{worst}");
 }
 
+/// Sixty rings that fall into each other until they hang: what a solution leaves at each of them adds up along the chain, and the last one would come
+/// up again by what is restored. Each pair keeps what it has at the start.
+#[test]
+fn a_long_chain_keeps_its_distances() {
+    let mut simulation = awake();
+    let ring = tree("torus?triangles=192&tube=0.2&scale=0.2");
+    let inner = ring.mesh().vertices().iter().map(|p| p.truncate().length()).fold(f64::INFINITY, f64::min);
+    let pitch = 2.0 * inner - 1e-3 - 0.1 * (0.2 - inner);
+    let turn = |k: usize| DQuat::from_rotation_y(0.5 * core::f64::consts::PI * (k % 2) as f64);
+    let ids: Vec<BodyId> = (0..60)
+        .map(|k| {
+            let one = body(k, &ring, -pitch * k as f64).with_orientation(turn(k));
+            let one = if k == 0 { one.with_kind(Kind::Static) } else { one };
+            simulation.add(&one).unwrap()
+        })
+        .collect();
+    let least = |simulation: &Simulation| {
+        let apart = |pair: &[BodyId]| {
+            let [a, b] = [pair[0], pair[1]].map(|id| Posed::new(&ring, simulation.pose(id)));
+            distance(a, b, Solid::Filled).unwrap().lower
+        };
+        ids.windows(2).map(apart).fold(f64::INFINITY, f64::min)
+    };
+    let start = least(&simulation);
+    while simulation.time() < 0.12 {
+        let end = simulation.time() + 0.01;
+        assert_eq!(run(&mut simulation, end).skipped, 0.0);
+        let now = least(&simulation);
+        assert!(now > 0.95 * start, "{now} {start} at {}", simulation.time());
+    }
+}
+
 /// A heap is the same at one and at two threads, to the bit.
 #[test]
 fn heaps_have_the_same_bits_at_any_number_of_threads() {

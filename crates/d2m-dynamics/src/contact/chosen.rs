@@ -38,6 +38,7 @@ impl System {
                 factor: self.factor.take(),
                 is_conforming: false,
                 has_joints: self.has_joints,
+                is_row: self.is_row,
             };
             part.solve(&of_chosen, accuracy, start);
             for (k, impulse) in places.into_iter().zip(&part.impulses) {

@@ -106,7 +106,7 @@ impl System {
         };
         let mut state = (self.impulses.clone(), shift, self.velocities());
         let mut anderson = Anderson::default();
-        let most_soft = if self.has_joints { JOINED } else { MOST_SOFT };
+        let most_soft = if self.has_joints || self.is_long() { JOINED } else { MOST_SOFT };
         let mut soft = (SHARE / self.mass_ratio()).clamp(LEAST_SOFT, most_soft);
         let hardest = (HARDEST * SHARE / self.mass_ratio()).max(LEAST_SOFT);
         let (mut last, mut losses) = (f64::INFINITY, 0);

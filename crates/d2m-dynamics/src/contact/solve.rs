@@ -44,7 +44,7 @@ impl System {
     /// impulses that there are.
     ///
     /// Few bodies, and masses far apart, are solved directly and exactly; what could stick so that it does. Of crowds sweeps come first, which
-    /// cost least. What they leave is solved directly with soft rows, which gains most where most slides; of those about to rest
+    /// cost least, unless they stand in a row. What they leave is solved directly with soft rows, which gains most where most slides; of those about to rest
     /// exactly. Where that leaves more than the tolerance sweeps are tried again, and the best by the residual is taken.
     pub(crate) fn solve(&mut self, targets: &[f64], accuracy: Accuracy, start: Start) -> f64 {
         if self.is_conforming
@@ -60,14 +60,18 @@ impl System {
                 residual = self.sweep_until(targets, accuracy, Pace::Conjugate, FIRST);
             }
             let could_stick = start == Start::Sticking && self.could_stick(accuracy);
-            let is_swept = accuracy.in_crowd() && !could_stick && !self.is_crowd() && !self.is_calm(accuracy);
+            let is_swept = accuracy.in_crowd()
+                && !could_stick
+                && !self.is_crowd()
+                && !self.is_long()
+                && !self.is_calm(accuracy);
             if is_swept {
                 residual = self.better(residual, 0.0, |system| {
                     system.sweep_until(targets, accuracy, Pace::Conjugate, FIRST)
                 });
             }
             let rests = moved <= SOME && self.is_calm(accuracy);
-            if moved > COUPLE && !rests && !could_stick {
+            if moved > COUPLE && !rests && !could_stick && !self.is_long() {
                 if residual <= self.enough(accuracy).max(LEFT_OVER * self.swept(accuracy)) {
                     return residual;
                 }
@@ -124,7 +128,7 @@ impl System {
         let is_exact = self.has_joints || moved <= SOME && self.is_calm(accuracy);
         if is_exact || moved <= COUPLE && !accuracy.in_crowd() {
             self.aim(accuracy)
-        } else if moved <= FEW && !accuracy.in_crowd() {
+        } else if self.is_long() || moved <= FEW && !accuracy.in_crowd() {
             SEVERAL * tolerance
         } else {
             CROWDED * tolerance
@@ -138,7 +142,8 @@ impl System {
 
     /// What sweeps may leave of a crowd.
     fn swept(&self, accuracy: Accuracy) -> f64 {
-        let may_sweep = accuracy.in_crowd() && (self.is_crowd() || !self.is_calm(accuracy));
+        let may_sweep =
+            accuracy.in_crowd() && !self.is_long() && (self.is_crowd() || !self.is_calm(accuracy));
         if may_sweep { (SWEPT * accuracy.slow).min(OF_SPEED * self.mean_speed()) } else { 0.0 }
     }
 
@@ -217,7 +222,13 @@ impl System {
 
     /// More bodies than can be solved exactly whatever they do?
     pub(crate) fn is_crowd(&self) -> bool {
-        self.moved() > FEW
+        self.moved() > FEW && !self.is_long()
+    }
+
+    /// Many bodies in a row, like the links of a chain? What is left at each contact adds up along it, and direct solutions cost little: their factors
+    /// have nothing that the matrix has not.
+    pub(super) fn is_long(&self) -> bool {
+        self.is_row && self.moved() > FEW
     }
 
     fn moved(&self) -> usize {

@@ -165,7 +165,8 @@ pub(super) mod tests {
             crate::contact::point::upright([lower, upper])
         };
         let contacts: Vec<_> = (0..count).map(contact).collect();
-        System::new(bodies, &contacts, |body| body)
+        // Taken for a crowd, and for no row, which is not swept.
+        System { is_row: false, ..System::new(bodies, &contacts, |body| body) }
     }
 
     /// Sweeps of a column pass on what is at one end by a body each; along a way they gain more than three times as much.

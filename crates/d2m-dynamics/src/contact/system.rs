@@ -23,6 +23,8 @@ pub(crate) struct System {
     /// More than eight contacts of one pair.
     pub(super) is_conforming: bool,
     pub(super) has_joints: bool,
+    /// None of the moved bodies touches more than two others: they stand, or hang, in a row.
+    pub(super) is_row: bool,
 }
 
 /// The impulses of the rows and the velocities of the bodies.
@@ -30,6 +32,18 @@ pub(crate) type Present = (Vec<[f64; 3]>, Vec<Velocity>);
 
 /// Contacts of one pair from which on it is conforming: as of a pin in its hole.
 const MANY: usize = 8;
+
+/// Touches none of the moved bodies more than two others?
+fn is_row(bodies: &[SolverBody], blocks: &[Block]) -> bool {
+    let mut partners = vec![[None; 2]; bodies.len()];
+    let mut is_second = |body: usize, other: usize| {
+        let known = &mut partners[body];
+        let place = known.iter().position(|&partner| partner.is_none_or(|partner| partner == other));
+        place.map(|place| known[place] = Some(other)).is_some()
+    };
+    let mut holds = |body: usize, other: usize| bodies[body].inverse_mass == 0.0 || is_second(body, other);
+    blocks.iter().all(|block| holds(block.a, block.b) && holds(block.b, block.a))
+}
 
 impl System {
     /// Bodies with the velocities that they have without impulses. `place` finds a body of a contact in the list.
@@ -51,8 +65,8 @@ impl System {
             .any(|of_pair| of_pair.iter().filter(|c| c.row.is_none()).count() > MANY);
         let has_joints = contacts.iter().any(|contact| contact.row.is_some());
         let impulses = vec![[0.0; 3]; blocks.len()];
-        let spares = Vec::new();
-        Self { bodies, blocks, impulses, spares, reach, factor: None, is_conforming, has_joints }
+        let (spares, is_row) = (Vec::new(), is_row(&bodies, &blocks));
+        Self { bodies, blocks, impulses, spares, reach, factor: None, is_conforming, has_joints, is_row }
     }
 
     /// For flights of this length in which contacts have these least rates: what closes by more than the room that it has ends them.
