@@ -9,7 +9,7 @@ use glam::{DQuat, DVec3};
 use std::f64::consts::PI;
 
 pub(super) fn cases(cases: &mut Vec<Case>) {
-    for (count, seconds) in [(3, 1.0), (10, 1.0), (30, 0.5), (100, 0.25)] {
+    for (count, seconds) in [(3, 1.0), (10, 1.0), (30, 1.0), (60, 0.5), (70, 0.5), (100, 0.5)] {
         cases
             .push(Case::new("chain", format!("of {count} rings"), seconds, move |scene| rings(scene, count)));
     }

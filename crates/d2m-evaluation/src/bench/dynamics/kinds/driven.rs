@@ -18,6 +18,8 @@ const LEFT: f64 = 1.0 / 64.0;
 const CORNERED: u64 = 12;
 
 pub(super) fn cases(cases: &mut Vec<Case>, seed: u64) {
+    let build = move |scene| drum(scene, seed, 3.0, 80, true);
+    cases.push(Case::new("drum", "at 3 rad/s with 80 pebbles", 0.5, build));
     for rate in [1.0, 3.0, 8.0] {
         for count in [1, 4, 12] {
             for (how, is_round) in [("boxes", false), ("pebbles", true)] {
@@ -36,6 +38,15 @@ pub(super) fn cases(cases: &mut Vec<Case>, seed: u64) {
         for left in [0.4, 0.05, -0.01, -1.0] {
             let variant = format!("on {count} boxes that leaves {left} gaps");
             cases.push(Case::new("press", variant, 1.2, move |scene| press(scene, count, left)));
+        }
+    }
+    for count in [3, 8, 20] {
+        for friction in [0.0, 0.4, 0.8] {
+            for (how, is_round) in [("boxes", false), ("pebbles", true)] {
+                let variant = format!("of {count} {how} with friction {friction}");
+                let build = move |scene| sweep(scene, seed, count, friction, is_round);
+                cases.push(Case::new("sweep", variant, 1.2, build));
+            }
         }
     }
     for degrees in [10.0, 25.0, 40.0] {
@@ -79,14 +90,19 @@ fn drum(mut scene: Scene, seed: u64, rate: f64, count: usize, is_round: bool) ->
         scene.add(plate.with_position(DVec3::Z * (side * (half + 0.1 + 0.5 * GAP))))?;
     }
     let mut random = Xoshiro256::new(seed);
-    for k in 0..count {
-        let place = DVec3::new(
-            0.3 * ((k % 4) as f64 - 1.5),
-            -0.45 + 0.32 * (k / 4) as f64 + random.range(-0.01, 0.01),
-            random.range(-0.1, 0.1),
-        );
-        let body = free(format!("grain {k}"), &grain(is_round, k)?, 0.5).with_position(place);
+    // Below first.
+    let pitch = if is_round { 0.24 } else { 0.28 };
+    let grid = |k: usize| pitch * ((k % 8) as f64 - 3.5);
+    let layers = if is_round { [-0.22, 0.0, 0.22].as_slice() } else { &[-0.14, 0.14] };
+    let section = (0..64).map(|k| DVec2::new(grid(k), grid(k / 8))).filter(|at| at.length() < 0.82);
+    let places = section.flat_map(|at| layers.iter().map(move |&z| at.extend(z)));
+    for (k, place) in places.take(count).enumerate() {
+        let jitter = DVec3::new(random.range(-0.01, 0.01), random.range(-0.01, 0.01), 0.0);
+        let body = free(format!("grain {k}"), &grain(is_round, k)?, 0.5).with_position(place + jitter);
         scene.add(body.with_orientation(random.rotation()))?;
+    }
+    if scene.ids.len() < count {
+        return Err(format!("a drum has no room for {count}").into());
     }
     let ids: Vec<usize> = scene.ids.iter().map(|id| id.index()).collect();
     let out = move |poses: &[Pose]| {
@@ -174,13 +190,45 @@ fn jaws(mut scene: Scene, degrees: f64, friction: f64) -> Result<Trial, Error> {
     under(scene, vec![gets_along(id, DVec3::X, 0.8 * way)])
 }
 
-/// A box on a floor that a paddle sweeps against a wall, square from above and at least as high as wide: it aligns, and there is room until the
-/// paddle is as near to the wall as it is wide.
+/// Grains on a floor between walls that a paddle sweeps towards a third one, up to where they still have room beside each other.
+fn sweep(mut scene: Scene, seed: u64, count: usize, friction: f64, is_round: bool) -> Result<Trial, Error> {
+    scene.add(floor(0.0, friction)?)?;
+    let (wall, side) = (cuboid(DVec3::new(0.2, 1.0, 2.0))?, cuboid(DVec3::new(2.0, 1.0, 0.2))?);
+    // The floor between the walls is 1.2 wide.
+    let wide = 0.6;
+    scene.add(still("wall", &wall, friction).with_position(DVec3::new(1.2, 1.0 + GAP, 0.0)))?;
+    for z in [-1.0, 1.0] {
+        let side = still(format!("side {z}"), &side, friction);
+        scene.add(side.with_position(DVec3::new(-1.001, 1.0 + GAP, z * (wide + 0.2))))?;
+    }
+    let mut random = Xoshiro256::new(seed);
+    for k in 0..count {
+        let place = DVec3::new(
+            0.27 * (k / 4 % 3) as f64 + random.range(-0.01, 0.01),
+            0.16 + 0.27 * (k / 12) as f64,
+            0.27 * ((k % 4) as f64 - 1.5),
+        );
+        let body = free(format!("grain {k}"), &grain(is_round, k)?, friction).with_position(place);
+        scene.add(body.with_orientation(random.rotation()))?;
+    }
+    // What is left is twice the area of the grains if they lie on their sides, and at least four of them deep.
+    let deep = (2.0 * count as f64 * 0.04 / (2.0 * wide)).max(0.4);
+    let paddle = free("paddle", &cuboid(DVec3::new(0.05, 0.9, wide - 0.01))?, friction);
+    let (from, to) = (-0.3, 1.0 - deep - 0.05);
+    scene.drive(paddle, pushed(DVec3::new(from, 0.9 + 2.0 * GAP, 0.0), DVec3::X * (to - from))?)?;
+    let ids: Vec<usize> = scene.ids.iter().map(|id| id.index()).collect();
+    let out = move |poses: &[Pose]| ids.iter().map(|&k| poses[k].translation.x).fold(f64::MIN, f64::max);
+    under(scene, vec![never_more("how far a grain is", 1.0, out)])
+}
+
+/// A box on a floor that a paddle sweeps against a wall, at least as high as wide: it aligns with one of its sides, and there is room until the
+/// paddle is as near to the wall as that is wide. One in three is not square from above.
 fn paddle(mut scene: Scene, seed: u64, variant: u64) -> Result<Trial, Error> {
     let mut random = Xoshiro256::new(seed.wrapping_mul(1000) + variant);
     let friction = [0.0, 0.2, 0.5, 0.8][(variant % 4) as usize];
     let half = 0.1 + 0.1 * random.unit();
-    let high = half * (1.0 + 0.5 * random.unit());
+    let other = if variant % 3 == 2 { half * (1.0 + random.unit()) } else { half };
+    let high = other * (1.0 + 0.5 * random.unit());
     let speed = 0.4 + random.unit();
     scene.add(floor(0.0, friction)?)?;
     let wall = cuboid(DVec3::new(0.2, 1.0, 2.0))?;
@@ -190,18 +238,21 @@ fn paddle(mut scene: Scene, seed: u64, variant: u64) -> Result<Trial, Error> {
         scene.add(still("side", &side, friction).with_position(DVec3::new(-1.001, 1.0 + GAP, 0.2)))?;
     }
     let yaw = DQuat::from_rotation_y(random.range(-0.7, 0.7));
-    let away =
-        if variant >= CORNERED { -(1.5 * half + 0.1 * random.unit()) } else { random.range(-0.2, 0.2) };
-    let body = free("box", &cuboid(DVec3::new(half, high, half))?, friction).with_orientation(yaw);
+    let away = if variant >= CORNERED {
+        -(1.5 * half.hypot(other) + 0.1 * random.unit())
+    } else {
+        random.range(-0.2, 0.2)
+    };
+    let body = free("box", &cuboid(DVec3::new(half, high, other))?, friction).with_orientation(yaw);
     scene.add(body.with_position(DVec3::new(0.3, high + GAP, away)))?;
     // Its face begins at −0.3; the wall's is at 1.
     let paddle = free("paddle", &cuboid(DVec3::new(0.05, 0.9, 1.0))?, friction);
     let from = DVec3::new(-0.35, 0.9 + 2.0 * GAP, if variant >= CORNERED { -1.0 } else { 0.0 });
     let motion = ConstantTwist::REST.with_position(from).with_linear_velocity(DVec3::X * speed);
     scene.drive(paddle, motion)?;
-    let end = (1.3 - 2.0 * half) / speed;
+    let [first, end] = [other, half].map(|half| (1.3 - 2.0 * half) / speed);
     scene.seconds = end + 0.1;
-    Ok(crushing(scene, is_crushed(end - 2.0 * LEFT * GAP / speed, end)))
+    Ok(crushing(scene, is_crushed(first - 2.0 * LEFT * GAP / speed, end)))
 }
 
 /// A shaft that turns in a bore of as many sides, with a clearance of ten gaps at the corners.
