@@ -18,7 +18,7 @@ pub(super) struct Block {
     /// The normal and the tangents; one row has only the first, which is zero if it only turns.
     pub(super) directions: [DVec3; 3],
     /// From the centers of a and b to the point of the contact; of one row, what turns them by it.
-    arms: [DVec3; 2],
+    pub(super) arms: [DVec3; 2],
     pub(super) law: Law,
     /// How fast the rates change at most by an impulse of one along a line: what makes a rate of an impulse.
     pub(super) scale: f64,
@@ -27,12 +27,12 @@ pub(super) struct Block {
     /// How the rates along the tangents change by an impulse of one along the normal.
     pub(super) coupling: [f64; 2],
     /// The impulses along the tangents that stop rates along them: a symmetric matrix. None: a direction cannot be moved.
-    stopping: Option<[f64; 3]>,
+    pub(super) stopping: Option<[f64; 3]>,
     /// The inverse of a bound on the eigenvalues of what that is the inverse of: one step for both directions, so that what slides is braked
     /// against its velocity and not askew.
     pub(super) step: f64,
     /// What surfaces that run add to the rates along the tangents.
-    running: [f64; 2],
+    pub(super) running: [f64; 2],
 }
 
 impl Block {
@@ -154,50 +154,5 @@ impl Block {
         let nearest = self.law.project([0, 1, 2].map(|i| impulse[i] - rates[i] / self.scale));
         let off: f64 = (0..3).map(|i| (impulse[i] - nearest[i]) * (impulse[i] - nearest[i])).sum();
         off.sqrt() * self.scale
-    }
-
-    /// Has the block obey its law with the velocities that there are.
-    #[inline]
-    pub(super) fn relax(&self, bodies: &mut [SolverBody], own: &mut [f64; 3], target: f64) {
-        if self.scale == 0.0 {
-            return;
-        }
-        let rates = self.rates(|i| bodies[i].velocity);
-        let wanted = match self.law {
-            Law::Cone { friction } => {
-                let along = (own[0] - (rates[0] - target) * self.mass).max(0.0);
-                let sliding = [0, 1].map(|k| rates[k + 1] + self.coupling[k] * (along - own[0]));
-                let [t, u] = self.sliding(sliding, friction * along, *own);
-                [along, t, u]
-            }
-            Law::Range { lo, hi, softness } => {
-                let yields = 1.0 / (1.0 / self.mass + softness);
-                let along = own[0] - (rates[0] - target + softness * own[0]) * yields;
-                [along.max(lo).min(hi), 0.0, 0.0]
-            }
-        };
-        if wanted != *own {
-            self.push(bodies, [0, 1, 2].map(|k| wanted[k] - own[k]));
-            *own = wanted;
-        }
-    }
-
-    /// The impulses along the tangents that stop sliding at these rates, or those of Coulomb's length nearest to them.
-    #[inline]
-    fn sliding(&self, rates: [f64; 2], limit: f64, own: [f64; 3]) -> [f64; 2] {
-        if limit <= 0.0 {
-            return [0.0; 2];
-        }
-        let square = |x: [f64; 2]| x[0] * x[0] + x[1] * x[1];
-        if let Some([tt, tu, uu]) = self.stopping {
-            let [t, u] = rates;
-            let stopped = [own[1] - (tt * t + tu * u), own[2] - (tu * t + uu * u)];
-            if square(stopped) <= limit * limit {
-                return stopped;
-            }
-        }
-        let wanted = [0, 1].map(|k| own[k + 1] - rates[k] * self.step);
-        let shorten = (limit / square(wanted).sqrt()).min(1.0);
-        wanted.map(|x| x * shorten)
     }
 }

@@ -9,6 +9,7 @@ mod convex;
 mod factor;
 mod impact;
 mod infeasible;
+mod lanes;
 mod law;
 mod newton;
 mod point;

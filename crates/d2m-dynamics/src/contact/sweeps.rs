@@ -1,14 +1,8 @@
 //! Projected Gauss–Seidel: block after block, each with the velocities that the ones before left.
 
 use super::accuracy::{Accuracy, Company};
+use super::lanes::{Descent, Off, Wide};
 use super::system::System;
-
-/// Sweeps go forth and back by turns: what one carries to the top of a pile the next one carries to its ground.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Order {
-    Forth,
-    Back,
-}
 
 /// How sweeps follow each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,117 +16,34 @@ pub(super) enum Pace {
 impl System {
     /// Sweeps over all blocks until the residual is no more than what may be left, so many at most; the residual.
     pub(super) fn sweep_until(&mut self, targets: &[f64], accuracy: Accuracy, pace: Pace, most: u32) -> f64 {
-        let mut off = self.off(targets);
-        let mut best = (off.most, self.present());
-        let mut descent = (pace == Pace::Conjugate).then(|| Descent::new(self));
+        let mut wide = Wide::new(self, targets);
+        let mut off = wide.sweep(0, None);
+        let mut best = (off.most, wide.kept());
+        let mut descent = (pace == Pace::Conjugate).then(Descent::default);
         let mut done = 0;
-        while !self.is_swept(off, targets, accuracy) && done < most {
-            for _ in 0..BETWEEN / 2 {
-                if let Some(descent) = &mut descent {
-                    descent.begin(self);
-                }
-                self.sweep(targets, Order::Forth);
-                self.sweep(targets, Order::Back);
-                if let Some(descent) = &mut descent {
-                    descent.go_on(self);
-                }
-            }
+        while !self.is_swept(off, accuracy) && done < most {
+            off = wide.sweep(BETWEEN / 2, descent.as_mut());
+            wide.move_bodies(self);
             done += BETWEEN;
-            off = self.off(targets);
             if off.most < best.0 || pace == Pace::Steady {
-                best = (off.most, self.present());
+                best = (off.most, wide.kept());
             }
         }
         // What goes on along a way may be further off for a while.
-        if off.most > best.0 && !self.is_swept(off, targets, accuracy) {
-            self.take_back(best.1);
-            return best.0;
+        if off.most > best.0 && !self.is_swept(off, accuracy) {
+            wide.take_back(best.1);
         }
-        off.most
+        wide.write(self);
+        self.residual(targets)
     }
 
     /// May so much be left? Of crowds single blocks may be further from their law than all together. Where something is solved again nothing
     /// that is left may end its flight: that event would find all others solved, and sweep no more than this solution.
-    fn is_swept(&self, off: Off, targets: &[f64], accuracy: Accuracy) -> bool {
+    fn is_swept(&self, off: Off, accuracy: Accuracy) -> bool {
         let enough = self.enough(accuracy);
         let may_be_left = || off.most <= self.left(accuracy) && off.mean <= MEAN * enough;
-        let has_room = || accuracy.company != Company::Heap || self.has_room(targets);
-        off.most <= enough || may_be_left() && has_room()
-    }
-
-    fn off(&self, targets: &[f64]) -> Off {
-        let (mut most, mut sum) = (0.0f64, 0.0);
-        for (k, &target) in targets.iter().enumerate() {
-            let own = self.own_residual(k, target);
-            most = most.max(own);
-            sum += own * own;
-        }
-        Off { most, mean: (sum / targets.len().max(1) as f64).sqrt() }
-    }
-
-    fn sweep(&mut self, targets: &[f64], order: Order) {
-        let Self { bodies, blocks, impulses, .. } = self;
-        for k in 0..blocks.len() {
-            let k = if order == Order::Forth { k } else { blocks.len() - 1 - k };
-            blocks[k].relax(bodies, &mut impulses[k], targets[k]);
-        }
-    }
-}
-
-/// Natural maps: the largest one, and the quadratic mean of all.
-#[derive(Clone, Copy, Debug)]
-struct Off {
-    most: f64,
-    mean: f64,
-}
-
-/// The way on which sweeps go on: nonsmooth nonlinear conjugate gradients (Silcowitz-Hansen, Niebe and Erleben 2010). What two sweeps, forth and
-/// back, change is the direction of descent; after it the impulses go on along the way of before, the less the more the change has
-/// shrunk, and begin a new way where it has grown. A crowd takes about half of the sweeps.
-struct Descent {
-    /// The impulses before the two sweeps, then what these change.
-    step: Vec<[f64; 3]>,
-    way: Vec<[f64; 3]>,
-    /// The sum of the squares of the changes, each as energy.
-    square: f64,
-}
-
-impl Descent {
-    fn new(system: &System) -> Self {
-        let none = vec![[0.0; 3]; system.blocks.len()];
-        Self { step: none.clone(), way: none, square: 0.0 }
-    }
-
-    fn begin(&mut self, system: &System) {
-        self.step.copy_from_slice(&system.impulses);
-    }
-
-    fn go_on(&mut self, system: &mut System) {
-        let System { bodies, blocks, impulses, .. } = system;
-        let mut square = 0.0;
-        for ((step, own), block) in self.step.iter_mut().zip(&*impulses).zip(&*blocks) {
-            *step = [0, 1, 2].map(|i| own[i] - step[i]);
-            square += block.scale * (step[0] * step[0] + step[1] * step[1] + step[2] * step[2]);
-        }
-        let part = square / core::mem::replace(&mut self.square, square);
-        if part.is_nan() || part > 1.0 {
-            self.way.fill([0.0; 3]);
-            return;
-        }
-        for (k, block) in blocks.iter().enumerate() {
-            let (step, way, own) = (self.step[k], &mut self.way[k], &mut impulses[k]);
-            if *way == [0.0; 3] {
-                *way = step;
-                continue;
-            }
-            let further = block.law.project([0, 1, 2].map(|i| own[i] + part * way[i]));
-            *way = [0, 1, 2].map(|i| part * way[i] + step[i]);
-            let added = [0, 1, 2].map(|i| further[i] - own[i]);
-            if added != [0.0; 3] {
-                block.push(bodies, added);
-                *own = further;
-            }
-        }
+        let has_room = accuracy.company != Company::Heap || off.has_room;
+        off.most <= enough || has_room && may_be_left()
     }
 }
 
@@ -187,7 +98,11 @@ pub(super) mod tests {
     fn single_blocks_of_crowds_may_be_further_from_their_law() {
         let crowd = column(64, 10.0);
         let enough = crowd.enough(ACCURACY);
-        let swept = |most: f64, mean: f64| crowd.is_swept(Off { most, mean }, &[0.0; 64], ACCURACY);
+        let is_swept = |crowd: &System, (most, mean): (f64, f64), accuracy: Accuracy| {
+            let has_room = Wide::new(crowd, &[0.0; 64]).sweep(0, None).has_room;
+            crowd.is_swept(Off { most, mean, has_room }, accuracy)
+        };
+        let swept = |most: f64, mean: f64| is_swept(&crowd, (most, mean), ACCURACY);
         assert!(swept(enough, enough) && swept(40.0 * enough, 0.2 * enough));
         assert!(!swept(40.0 * enough, 0.3 * enough) && !swept(1.0, 0.0));
         // The lowest contact closes at 10, which ends a flight of this length unless it has that much room.
@@ -195,13 +110,13 @@ pub(super) mod tests {
         for (distance, lasts) in [(0.0, false), (1.0, false), (20.0, true)] {
             let contact = ContactPoint { distance, ..crate::contact::point::upright([64, 0]) };
             let crowd = column(64, 10.0).for_flights(&[contact], &[0.0], 1.0);
-            let off = Off { most: 40.0 * enough, mean: 0.2 * enough };
-            assert!(crowd.is_swept(off, &[0.0; 64], ACCURACY));
-            assert_eq!(crowd.is_swept(off, &[0.0; 64], heap), lasts, "{distance}");
-            assert!(crowd.is_swept(Off { most: enough, mean: enough }, &[0.0; 64], heap));
+            let off = (40.0 * enough, 0.2 * enough);
+            assert!(is_swept(&crowd, off, ACCURACY));
+            assert_eq!(is_swept(&crowd, off, heap), lasts, "{distance}");
+            assert!(is_swept(&crowd, (enough, enough), heap));
         }
         let alone = Accuracy { company: Company::Few, ..ACCURACY };
-        assert!(!crowd.is_swept(Off { most: 2.0 * enough, mean: 0.0 }, &[0.0; 64], alone));
+        assert!(!is_swept(&crowd, (2.0 * enough, 0.0), alone));
         // Two at rest are solved exactly, unless others are connected with them.
         let calm = column(2, 0.0);
         assert!(calm.enough(ACCURACY) < 0.1 * calm.enough(heap));

@@ -79,11 +79,6 @@ impl System {
         self
     }
 
-    /// Is no rate so far below its target that it ends its flight?
-    pub(super) fn has_room(&self, targets: &[f64]) -> bool {
-        self.spares.iter().enumerate().all(|(k, &spare)| targets[k] - self.rate(k) <= spare)
-    }
-
     /// The bodies have other inertias and velocities, in which the impulses are contained.
     pub(crate) fn renew(&mut self) {
         for block in &mut self.blocks {

@@ -87,6 +87,30 @@ struct Direction {
     error: f64,
 }
 
+/// The box about placed points, along the axes of B.
+#[derive(Clone, Copy)]
+struct Box3 {
+    lo: DVec3,
+    hi: DVec3,
+}
+
+impl Box3 {
+    fn at(point: DVec3) -> Self {
+        Self { lo: point, hi: point }
+    }
+
+    fn of(one: DVec3, other: DVec3) -> Self {
+        Self { lo: one.min(other), hi: one.max(other) }
+    }
+
+    /// False: along an axis the boxes are further apart than the limit, by more than one rounding of 2⁻⁵³, as [`FeatureTest::limit`] is greater
+    /// than that of its points by [`DISTANCE_ROUNDING`]. What is not a number is within any limit.
+    fn is_within(&self, limit: f64, other: &Self) -> bool {
+        let between = (other.lo - self.hi).max(self.lo - other.hi);
+        !(between.x > limit || between.y > limit || between.z > limit)
+    }
+}
+
 /// Weights at a parameter along a side.
 fn side(k: usize, parameter: f64) -> [f64; 3] {
     let mut weights = [0.0; 3];
@@ -114,17 +138,29 @@ impl<'a> FeatureTest<'a> {
     /// Tests all features that the two triangles own, and the two faces against the vertices.
     pub(super) fn compare(&mut self, triangles: [u32; 2], placed: &[[DVec3; 3]; 2]) {
         let owned = [0, 1].map(|body| *self.adjacency[body].owned(triangles[body]));
+        let faces = placed.map(|[a, b, c]| Box3 { lo: a.min(b).min(c), hi: a.max(b).max(c) });
+        let edges = placed.map(|[a, b, c]| [Box3::of(a, b), Box3::of(b, c), Box3::of(c, a)]);
+        let limit = self.limit;
+        let has_vertex = |body: usize, k: usize| {
+            owned[body].vertices[k] != NONE && faces[1 - body].is_within(limit, &Box3::at(placed[body][k]))
+        };
+        let has_edge = |body: usize, k: usize| {
+            owned[body].edges[k] != NONE && faces[1 - body].is_within(limit, &edges[body][k])
+        };
+        let vertices = [0, 1].map(|body| [0, 1, 2].map(|k| has_vertex(body, k)));
+        let sides = [0, 1].map(|body| [0, 1, 2].map(|k| has_edge(body, k)));
         for body in 0..2 {
             let other = 1 - body;
-            for k in (0..3).filter(|&k| owned[body].vertices[k] != NONE) {
+            for k in (0..3).filter(|&k| vertices[body][k]) {
                 let vertex = Vertex::new(owned[body].vertices[k], &placed[body], triangles[body], k);
+                let point = Box3::at(placed[body][k]);
                 self.vertex_face(body, vertex, triangles[other], &placed[other]);
-                for l in (0..3).filter(|&l| owned[other].edges[l] != NONE) {
+                for l in (0..3).filter(|&l| sides[other][l] && edges[other][l].is_within(limit, &point)) {
                     let edge = Feature::Edge(owned[other].edges[l]);
                     self.vertex_edge(body, vertex, edge, (triangles[other], l), &placed[other]);
                 }
                 if body == 0 {
-                    for l in (0..3).filter(|&l| owned[1].vertices[l] != NONE) {
+                    for l in (0..3).filter(|&l| vertices[1][l]) {
                         let end = Vertex::new(owned[1].vertices[l], &placed[1], triangles[1], l).end;
                         let kind = Kind::vertex(0, vertex.vertex, triangles[1], 0);
                         self.accept([vertex.end, end], kind, None);
@@ -132,10 +168,10 @@ impl<'a> FeatureTest<'a> {
                 }
             }
         }
-        for k in (0..3).filter(|&k| owned[0].edges[k] != NONE) {
-            for l in (0..3).filter(|&l| owned[1].edges[l] != NONE) {
-                let edges = [owned[0].edges[k], owned[1].edges[l]];
-                self.edge_edge(edges, triangles, [k, l], placed);
+        for k in (0..3).filter(|&k| sides[0][k]) {
+            for l in (0..3).filter(|&l| sides[1][l] && edges[1][l].is_within(limit, &edges[0][k])) {
+                let ids = [owned[0].edges[k], owned[1].edges[l]];
+                self.edge_edge(ids, triangles, [k, l], placed);
             }
         }
     }

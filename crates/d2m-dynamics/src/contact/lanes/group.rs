@@ -1,0 +1,241 @@
+//! All blocks of one kind, in batches.
+
+use super::super::block::Block;
+use super::super::system::System;
+use super::Order;
+use super::batch::{Batch, Ends, Pushes};
+use crate::velocity::Velocity;
+use core::ops::Range;
+use d2m_lanes::{Doubles, Quad};
+
+/// A block in each lane.
+pub(super) trait Side: Clone {
+    /// Blocks that nothing moves.
+    const EMPTY: Self;
+
+    /// Puts a block, with its target and spare, into a lane.
+    fn put(&mut self, lane: usize, block: &Block, target: f64, spare: f64);
+    fn scale(&self) -> &Quad;
+    fn target(&self) -> &Quad;
+    fn spare(&self) -> &Quad;
+    fn rates<D: Doubles>(&self, ends: &Ends<D>) -> [D; 3];
+    /// The impulses with which blocks obey their laws, at the rates that they have with those of now.
+    fn relaxed<D: Doubles>(&self, rates: &[D; 3], own: &[D; 3]) -> [D; 3];
+    /// The nearest impulses that the laws allow.
+    fn projected<D: Doubles>(&self, impulses: &[D; 3]) -> [D; 3];
+    /// How far impulses are from what the laws ask for, as rates; see [`System::residual`].
+    fn natural_map<D: Doubles>(&self, rates: &[D; 3], own: &[D; 3]) -> D;
+    fn pushes<D: Doubles>(&self, impulses: &[D; 3]) -> Pushes<D>;
+}
+
+/// Blocks of one kind, their impulses, and what sweeps go on along.
+#[derive(Clone, Debug)]
+pub(super) struct Group<S> {
+    batches: Vec<Batch>,
+    sides: Vec<S>,
+    /// The blocks' places in the system.
+    places: Vec<[Option<usize>; 4]>,
+    pub(super) impulses: Vec<[Quad; 3]>,
+    /// The impulses before two sweeps.
+    begun: Vec<[Quad; 3]>,
+    way: Vec<[Quad; 3]>,
+    pub(super) count: usize,
+}
+
+/// What is left of a group: the largest natural map, the sum of the squares of all.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Left {
+    pub(super) most: f64,
+    pub(super) sum: f64,
+    pub(super) has_room: bool,
+}
+
+/// The consecutive blocks of one pair of bodies.
+#[derive(Clone, Debug)]
+pub(super) struct OfPair {
+    bodies: [usize; 2],
+    blocks: Range<usize>,
+}
+
+/// Layers of pairs of which no two share a body that impulses move: each pair is in the first layer behind those of the pairs before it that
+/// share one with it. So layer after layer, forth or back, blocks meet the velocities that they would meet one after the other.
+pub(super) fn layers(system: &System, has_kind: impl Fn(usize) -> bool) -> Vec<Vec<OfPair>> {
+    let mut next = vec![0usize; system.bodies.len()];
+    let mut layers: Vec<Vec<OfPair>> = Vec::new();
+    let bodies_of = |k: usize| [system.blocks[k].a, system.blocks[k].b];
+    let mut first = 0;
+    while first < system.blocks.len() {
+        let bodies = bodies_of(first);
+        let belongs = |&k: &usize| bodies_of(k) == bodies && has_kind(k) == has_kind(first);
+        let end = (first + 1..system.blocks.len()).find(|k| !belongs(k)).unwrap_or(system.blocks.len());
+        if has_kind(first) {
+            let moved = || bodies.into_iter().filter(|&body| system.is_moved(body));
+            let layer = moved().map(|body| next[body]).max().unwrap_or_default();
+            moved().for_each(|body| next[body] = layer + 1);
+            layers.resize_with(layers.len().max(layer + 1), Vec::new);
+            layers[layer].push(OfPair { bodies, blocks: first..end });
+        }
+        first = end;
+    }
+    // Lanes of a batch have about as many blocks.
+    for layer in &mut layers {
+        layer.sort_by_key(|pair| pair.blocks.len());
+    }
+    layers
+}
+
+impl<S: Side> Group<S> {
+    pub(super) fn new(system: &System, targets: &[f64], layers: &[Vec<OfPair>]) -> Self {
+        let mut group = Self {
+            batches: Vec::new(),
+            sides: Vec::new(),
+            places: Vec::new(),
+            impulses: Vec::new(),
+            begun: Vec::new(),
+            way: Vec::new(),
+            count: 0,
+        };
+        for pairs in layers.iter().flat_map(|layer| layer.chunks(4)) {
+            let start = group.sides.len();
+            let most = pairs.iter().map(|pair| pair.blocks.len()).max().unwrap_or_default();
+            for row in 0..most {
+                group.sides.push(S::EMPTY);
+                let side = &mut group.sides[start + row];
+                let mut places = [None; 4];
+                let mut impulses = [Quad([0.0; 4]); 3];
+                for (lane, pair) in pairs.iter().enumerate() {
+                    let Some(k) = pair.blocks.clone().nth(row) else { continue };
+                    let spare = system.spares.get(k).copied().unwrap_or(f64::INFINITY);
+                    side.put(lane, &system.blocks[k], targets[k], spare);
+                    places[lane] = Some(k);
+                    for (i, own) in system.impulses[k].into_iter().enumerate() {
+                        impulses[i].0[lane] = own;
+                    }
+                    group.count += 1;
+                }
+                group.places.push(places);
+                group.impulses.push(impulses);
+            }
+            let bodies: Vec<[usize; 2]> = pairs.iter().map(|pair| pair.bodies).collect();
+            group.batches.push(Batch::new(&bodies, &system.bodies, start..group.sides.len()));
+        }
+        group.begun.clone_from(&group.impulses);
+        group.way.clone_from(&group.impulses);
+        group
+    }
+
+    pub(super) fn write(&self, impulses: &mut [[f64; 3]]) {
+        for (places, own) in self.places.iter().zip(&self.impulses) {
+            for (lane, place) in places.iter().enumerate() {
+                if let Some(k) = *place {
+                    impulses[k] = [own[0].0[lane], own[1].0[lane], own[2].0[lane]];
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn sweep<D: Doubles>(&mut self, velocities: &mut [Velocity], order: Order) {
+        for n in 0..self.batches.len() {
+            let batch = &self.batches[if order == Order::Forth { n } else { self.batches.len() - 1 - n }];
+            let mut ends = batch.load::<D>(velocities);
+            for m in 0..batch.rows.len() {
+                let k = if order == Order::Forth { batch.rows.start + m } else { batch.rows.end - 1 - m };
+                let (side, own) = (&self.sides[k], load::<D>(&self.impulses[k]));
+                let wanted = side.relaxed(&side.rates(&ends), &own);
+                batch.push(&mut ends, &side.pushes(&minus(&wanted, &own)));
+                self.impulses[k] = store(&wanted);
+            }
+            batch.store(&ends, velocities);
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn off<D: Doubles>(&self, velocities: &[Velocity]) -> Left {
+        let zero = D::splat(0.0);
+        let (mut most, mut sum, mut lacks) = (zero, zero, zero);
+        for batch in &self.batches {
+            let ends = batch.load::<D>(velocities);
+            for k in batch.rows.start..batch.rows.end {
+                let side = &self.sides[k];
+                let rates = side.rates(&ends);
+                let off = side.natural_map(&rates, &load(&self.impulses[k]));
+                let off = D::if_greater(D::load(side.scale()), zero, off, zero);
+                most = most.max(off);
+                sum = sum + off * off;
+                let below = D::load(side.target()) - rates[0];
+                lacks = D::if_greater(below, D::load(side.spare()), D::splat(1.0), lacks);
+            }
+        }
+        Left { most: most.max_element(), sum: total(sum), has_room: lacks.max_element() == 0.0 }
+    }
+
+    /// Two sweeps follow.
+    pub(super) fn begin(&mut self) {
+        self.begun.copy_from_slice(&self.impulses);
+    }
+
+    /// What sweeps have changed is the way to go on.
+    pub(super) fn begin_way(&mut self) {
+        core::mem::swap(&mut self.way, &mut self.begun);
+    }
+
+    /// Takes what sweeps have changed in place of what they began with; the sum of its squares, each as energy.
+    #[inline(always)]
+    pub(super) fn changed<D: Doubles>(&mut self) -> f64 {
+        let mut sum = D::splat(0.0);
+        for k in 0..self.sides.len() {
+            let change = minus(&load::<D>(&self.impulses[k]), &load(&self.begun[k]));
+            let [n, t, u] = change;
+            sum = sum + D::load(self.sides[k].scale()) * (n * n + t * t + u * u);
+            self.begun[k] = store(&change);
+        }
+        total(sum)
+    }
+
+    /// Goes on along a part of the way, and adds to that part what sweeps have changed.
+    #[inline(always)]
+    pub(super) fn go_on<D: Doubles>(&mut self, velocities: &mut [Velocity], part: f64) {
+        let part = D::splat(part);
+        for batch in &self.batches {
+            let mut ends = batch.load::<D>(velocities);
+            for k in batch.rows.start..batch.rows.end {
+                let (side, own) = (&self.sides[k], load::<D>(&self.impulses[k]));
+                let [n, t, u] = load::<D>(&self.way[k]);
+                let along = [n * part, t * part, u * part];
+                let further = side.projected(&plus(&own, &along));
+                batch.push(&mut ends, &side.pushes(&minus(&further, &own)));
+                self.impulses[k] = store(&further);
+                self.way[k] = store(&plus(&along, &load(&self.begun[k])));
+            }
+            batch.store(&ends, velocities);
+        }
+    }
+}
+
+#[inline(always)]
+fn load<D: Doubles>(values: &[Quad; 3]) -> [D; 3] {
+    [D::load(&values[0]), D::load(&values[1]), D::load(&values[2])]
+}
+
+#[inline(always)]
+fn store<D: Doubles>(values: &[D; 3]) -> [Quad; 3] {
+    [values[0].store(), values[1].store(), values[2].store()]
+}
+
+#[inline(always)]
+fn minus<D: Doubles>(a: &[D; 3], b: &[D; 3]) -> [D; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+fn plus<D: Doubles>(a: &[D; 3], b: &[D; 3]) -> [D; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// The sum of all lanes.
+#[inline(always)]
+fn total<D: Doubles>(values: D) -> f64 {
+    let Quad([a, b, c, d]) = values.store();
+    (a + b) + (c + d)
+}

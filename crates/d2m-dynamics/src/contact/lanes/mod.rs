@@ -1,0 +1,170 @@
+//! The blocks of a system side by side: four pairs of bodies at a time, so that sweeps do four blocks with one instruction.
+//!
+//! Lanes of a batch share no body that impulses move, and what shares one keeps its order. So sweeps are those of Gauss and Seidel, one block
+//! after the other, to the last bit. Most batches share nothing with the next one either: the processor need not wait for one to begin it.
+//! The instructions are chosen when the program runs, and all give the same bits.
+
+mod batch;
+mod cones;
+mod group;
+mod lines;
+#[cfg(test)]
+mod tests;
+
+use super::law::Law;
+use super::system::System;
+use crate::velocity::Velocity;
+use cones::Cones;
+use d2m_lanes::{Doubles, Lanes, Quad, Task, run};
+use group::{Group, layers};
+use lines::Lines;
+
+/// Sweeps go forth and back by turns: what one carries to the top of a pile the next one carries to its ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Order {
+    Forth,
+    Back,
+}
+
+/// A system as batches, its impulses and velocities.
+#[derive(Clone, Debug)]
+pub(super) struct Wide {
+    /// Of the bodies, and of one that empty lanes push.
+    velocities: Vec<Velocity>,
+    cones: Group<Cones>,
+    lines: Group<Lines>,
+}
+
+/// Impulses and velocities to go back to.
+pub(super) type Kept = (Vec<Velocity>, Vec<[Quad; 3]>, Vec<[Quad; 3]>);
+
+/// How far blocks are from their law.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Off {
+    /// The largest natural map.
+    pub(super) most: f64,
+    /// The quadratic mean of all.
+    pub(super) mean: f64,
+    /// Is no rate so far below its target that it ends its flight?
+    pub(super) has_room: bool,
+}
+
+/// The way on which sweeps go on: nonsmooth nonlinear conjugate gradients (Silcowitz-Hansen, Niebe and Erleben 2010). What two sweeps, forth and
+/// back, change is the direction of descent; after it the impulses go on along the way of before, the less the more the change has
+/// shrunk, and begin a new way where it has grown. A crowd takes about half of the sweeps.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Descent {
+    /// The sum of the squares of what the last two sweeps changed, each as energy.
+    square: f64,
+    /// Is there a way of before?
+    has_way: bool,
+}
+
+impl Wide {
+    pub(super) fn new(system: &System, targets: &[f64]) -> Self {
+        let mut velocities: Vec<Velocity> = system.bodies.iter().map(|body| body.velocity).collect();
+        velocities.push(Velocity::default());
+        let is_cone = |k: usize| matches!(system.blocks[k].law, Law::Cone { .. });
+        Self {
+            velocities,
+            cones: Group::new(system, targets, &layers(system, is_cone)),
+            lines: Group::new(system, targets, &layers(system, |k| !is_cone(k))),
+        }
+    }
+
+    /// So many times two sweeps, forth and back; how far blocks are from their law then.
+    pub(super) fn sweep(&mut self, twice: u32, descent: Option<&mut Descent>) -> Off {
+        run(Round { wide: self, descent, twice })
+    }
+
+    pub(super) fn kept(&self) -> Kept {
+        (self.velocities.clone(), self.cones.impulses.clone(), self.lines.impulses.clone())
+    }
+
+    pub(super) fn take_back(&mut self, (velocities, cones, lines): Kept) {
+        (self.velocities, self.cones.impulses, self.lines.impulses) = (velocities, cones, lines);
+    }
+
+    /// Writes the velocities to the bodies.
+    pub(super) fn move_bodies(&self, system: &mut System) {
+        for (body, velocity) in system.bodies.iter_mut().zip(&self.velocities) {
+            body.velocity = *velocity;
+        }
+    }
+
+    /// Writes the impulses and the velocities to the system.
+    pub(super) fn write(&self, system: &mut System) {
+        self.move_bodies(system);
+        self.cones.write(&mut system.impulses);
+        self.lines.write(&mut system.impulses);
+    }
+
+    #[inline(always)]
+    fn sweep_once<D: Doubles>(&mut self, order: Order) {
+        match order {
+            Order::Forth => {
+                self.cones.sweep::<D>(&mut self.velocities, order);
+                self.lines.sweep::<D>(&mut self.velocities, order);
+            }
+            Order::Back => {
+                self.lines.sweep::<D>(&mut self.velocities, order);
+                self.cones.sweep::<D>(&mut self.velocities, order);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn off<D: Doubles>(&self) -> Off {
+        let (cones, lines) = (self.cones.off::<D>(&self.velocities), self.lines.off::<D>(&self.velocities));
+        let count = self.cones.count + self.lines.count;
+        Off {
+            most: cones.most.max(lines.most),
+            mean: ((cones.sum + lines.sum) / count.max(1) as f64).sqrt(),
+            has_room: cones.has_room && lines.has_room,
+        }
+    }
+}
+
+impl Descent {
+    #[inline(always)]
+    fn go_on<D: Doubles>(&mut self, wide: &mut Wide) {
+        let square = wide.cones.changed::<D>() + wide.lines.changed::<D>();
+        let part = square / core::mem::replace(&mut self.square, square);
+        if part.is_nan() || part > 1.0 {
+            self.has_way = false;
+        } else if core::mem::replace(&mut self.has_way, true) {
+            wide.cones.go_on::<D>(&mut wide.velocities, part);
+            wide.lines.go_on::<D>(&mut wide.velocities, part);
+        } else {
+            wide.cones.begin_way();
+            wide.lines.begin_way();
+        }
+    }
+}
+
+struct Round<'s> {
+    wide: &'s mut Wide,
+    descent: Option<&'s mut Descent>,
+    twice: u32,
+}
+
+impl Task for Round<'_> {
+    type Output = Off;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Off {
+        let Self { wide, mut descent, twice } = self;
+        for _ in 0..twice {
+            if descent.is_some() {
+                wide.cones.begin();
+                wide.lines.begin();
+            }
+            wide.sweep_once::<L::Doubles>(Order::Forth);
+            wide.sweep_once::<L::Doubles>(Order::Back);
+            if let Some(descent) = &mut descent {
+                descent.go_on::<L::Doubles>(wide);
+            }
+        }
+        wide.off::<L::Doubles>()
+    }
+}
