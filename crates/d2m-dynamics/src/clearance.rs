@@ -53,6 +53,20 @@ pub(crate) fn are_spheres_apart(a: &RigidBody, b: &RigidBody, time: f64, end: f6
     a.sphere_at(time).stays_apart(&b.sphere_at(time), gap, end - time)
 }
 
+/// Two bodies where their flights have them at a time.
+#[derive(Clone, Copy)]
+pub(crate) struct Placed<'s> {
+    bodies: [&'s RigidBody; 2],
+    pub(crate) poses: [Pose; 2],
+    now: f64,
+}
+
+impl<'s> Placed<'s> {
+    pub(crate) fn at(bodies: [&'s RigidBody; 2], now: f64) -> Self {
+        Self { bodies, poses: bodies.map(|body| body.pose_at(now)), now }
+    }
+}
+
 /// Two bodies are at least `distance` apart in these poses.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clearance {
@@ -61,11 +75,12 @@ pub(crate) struct Clearance {
 }
 
 impl Clearance {
-    /// A lower bound of the distance of the bodies in their flights from `now` on, for a time `tau`.
-    pub(crate) fn bound(&self, bodies: [&RigidBody; 2], now: f64, tau: f64) -> f64 {
+    /// A lower bound of the distance of the bodies in their flights from where they are on, for a time `tau`.
+    pub(crate) fn bound(&self, placed: &Placed<'_>, tau: f64) -> f64 {
+        let Placed { bodies, poses, now } = *placed;
         let (mut offset, mut turned) = (DVec3::ZERO, 0.0);
         for (k, body) in bodies.into_iter().enumerate() {
-            let (old, new) = (&self.poses[k], body.pose_at(now));
+            let (old, new) = (&self.poses[k], &poses[k]);
             offset += (new.translation - old.translation) * [-1.0, 1.0][k];
             turned += 2.0 * between(new.rotation, old.rotation) * body.radius;
         }
@@ -108,9 +123,11 @@ pub(crate) fn have_few_vertices(bodies: [&RigidBody; 2]) -> bool {
 /// What bends off a direction grows with the square of the time, so where the window is too long parts of it are tried.
 pub(crate) fn apart_along_until(normal: DVec3, bodies: [&RigidBody; 2], window: Window, needed: f64) -> f64 {
     let [a, b] = bodies.map(|body| body.flight.angular_velocity());
+    let begun = Placed::at(bodies, window.start());
     let is_apart = |spin: DVec3, from: f64, to: f64| {
         let turned = (normal + spin.cross(normal) * (from - window.start())).normalize();
-        bound_along(turned, spin, bodies, from, to - from).is_some_and(|bound| bound > needed)
+        let placed = if from == begun.now { begun } else { Placed::at(bodies, from) };
+        bound_along(turned, spin, &placed, to - from).is_some_and(|bound| bound > needed)
     };
     let mut until = window.start();
     for spin in [a, b, (a + b) * 0.5] {
@@ -121,19 +138,13 @@ pub(crate) fn apart_along_until(normal: DVec3, bodies: [&RigidBody; 2], window: 
     until
 }
 
-/// A lower bound of how far two bodies are apart along a direction in their flights from `now` on, for a time `tau`: the direction from a to
-/// b that is the unit vector `normal` at first and then turns with `spin`. None: they have too many vertices to place.
-pub(crate) fn bound_along(
-    normal: DVec3,
-    spin: DVec3,
-    bodies: [&RigidBody; 2],
-    now: f64,
-    tau: f64,
-) -> Option<f64> {
+/// A lower bound of how far two bodies are apart along a direction in their flights from where they are on, for a time `tau`: the direction from
+/// a to b that is the unit vector `normal` at first and then turns with `spin`. None: they have too many vertices to place.
+pub(crate) fn bound_along(normal: DVec3, spin: DVec3, placed: &Placed<'_>, tau: f64) -> Option<f64> {
+    let Placed { bodies, poses, now } = *placed;
     if !have_few_vertices(bodies) {
         return None;
     }
-    let poses = bodies.map(|body| body.pose_at(now));
     let offset = poses[1].translation - poses[0].translation;
     let velocity = bodies[1].flight.linear_velocity() - bodies[0].flight.linear_velocity();
     let start = normal.dot(offset);
@@ -210,9 +221,9 @@ mod tests {
             let found = distance(posed[0], posed[1], Solid::Filled).unwrap();
             let known = Clearance { poses, distance: found.lower };
             let spins = bodies.map(|body| body.flight.angular_velocity());
-            let along = |spin| bound_along(found.normal, spin, bodies, now, tau).unwrap();
+            let along = |spin| bound_along(found.normal, spin, &Placed::at(bodies, now), tau).unwrap();
             let bounds = [
-                (0, known.bound(bodies, now, tau)),
+                (0, known.bound(&Placed::at(bodies, now), tau)),
                 (1, along(spins[0]).max(along(spins[1])).max(along(DVec3::ZERO))),
             ];
             let least = (0..=32).map(|i| apart(bodies, now + tau * f64::from(i) / 32.0)).reduce(f64::min);
@@ -248,7 +259,7 @@ mod tests {
             let (bodies, normal) = ([&a, &b], vector(state).normalize());
             let spin = [vector(state) * 5.0, a.flight.angular_velocity()][k / 2 % 2];
             let tau = 0.1 * draw(state).abs();
-            let bound = bound_along(normal, spin, bodies, 1.0, tau).unwrap();
+            let bound = bound_along(normal, spin, &Placed::at(bodies, 1.0), tau).unwrap();
             for i in 0..=32 {
                 let gap = gap(normal, spin, bodies, 1.0, 1.0 + tau * f64::from(i) / 32.0);
                 assert!(bound <= gap, "{k}: {bound} > {gap}");
@@ -275,7 +286,7 @@ mod tests {
             assert!(length == 0.0 || least.unwrap() > needed, "{k}: {least:?} {needed}");
             let along = |body: &RigidBody| {
                 let spin = body.flight.angular_velocity();
-                bound_along(found.normal, spin, bodies, now, window.length()).unwrap() > needed
+                bound_along(found.normal, spin, &Placed::at(bodies, now), window.length()).unwrap() > needed
             };
             let is_whole = bodies.into_iter().any(along);
             whole += u32::from(is_whole);
@@ -294,7 +305,7 @@ mod tests {
         let b = flying(DVec3::splat(0.3), DVec3::new(1.2, 0.5, 0.0), DQuat::IDENTITY, Velocity::default());
         let bodies = [&a, &b];
         let known = Clearance { poses: bodies.map(|body| body.pose_at(1.0)), distance: 0.15 - 1e-12 };
-        let (bound, least) = (known.bound(bodies, 1.0, 0.08), apart(bodies, 1.08));
+        let (bound, least) = (known.bound(&Placed::at(bodies, 1.0), 0.08), apart(bodies, 1.08));
         assert!(bound <= least && bound > 0.85 * least, "{bound} {least}");
     }
 }

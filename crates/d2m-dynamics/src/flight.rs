@@ -6,7 +6,7 @@ use crate::turning::Pull;
 use crate::velocity::Velocity;
 use d2m_bvh::Posed;
 use d2m_motion::{ConstantTwist, Pose, RigidMotion};
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 
 /// What a tumbling body turns in one flight at most, in radians, times how far its moments of inertia are apart. The midpoint rule is the
 /// geodesic one: reversible, so its energy oscillates and does not drift; the middle of a flight is off the motion of a free top by
@@ -51,9 +51,16 @@ impl RigidBody {
     /// L in its middle, and so have all the flights of a body that nothing meets. Under a pull it is the ω with (R I Rᵀ + G) ω = L + G ω₀.
     pub(crate) fn midpoint_spin(&self, angular_momentum: DVec3, h: f64, pull: Option<Pull>) -> DVec3 {
         let sum = angular_momentum + pull.map_or(DVec3::ZERO, |pull| pull.stiffness * pull.free);
-        let mut omega = self.inverse_inertia_under(self.orientation, pull) * sum;
+        let spin = |orientation: DQuat| match pull {
+            Some(_) => self.inverse_inertia_under(orientation, pull) * sum,
+            None => {
+                let r = DMat3::from_quat(orientation);
+                r * (self.inverse_inertia * (r.transpose() * sum))
+            }
+        };
+        let mut omega = spin(self.orientation);
         for _ in 0..64 {
-            let next = self.inverse_inertia_under(self.turned(omega, 0.5 * h), pull) * sum;
+            let next = spin(self.turned(omega, 0.5 * h));
             let change = (next - omega).abs().max_element();
             omega = next;
             if change <= 2.0 * f64::EPSILON * omega.abs().max_element() {
@@ -65,6 +72,11 @@ impl RigidBody {
 
     /// The orientation after a turn with an angular velocity for a time.
     pub(crate) fn turned(&self, omega: DVec3, time: f64) -> DQuat {
+        // Less than whole turns, as almost always, need no flight.
+        let vector = omega * time;
+        if vector.abs().max_element() < 1.0 {
+            return (Pose::from_rotation_vector(DVec3::ZERO, vector).rotation * self.orientation).normalize();
+        }
         let spin = ConstantTwist::try_new(DVec3::ZERO, self.orientation, DVec3::ZERO, omega);
         spin.map_or(self.orientation, |spin| spin.pose_and_twist(time).0.rotation)
     }

@@ -53,16 +53,25 @@ pub(crate) fn islands(bodies: &[RigidBody], contacts: Vec<ContactPoint>) -> Vec<
     for c in contacts.iter().filter(|c| moves(c.a) && moves(c.b)) {
         join(&mut parent, c.a, c.b);
     }
-    let mut place = vec![usize::MAX; bodies.len()];
-    let mut found: Vec<Island> = Vec::new();
-    for c in contacts {
+    let mut place: Vec<Option<usize>> = vec![None; bodies.len()];
+    let mut sizes: Vec<usize> = Vec::new();
+    let mut numbers = Vec::with_capacity(contacts.len());
+    for c in &contacts {
         let body = if moves(c.a) { c.a } else { c.b };
-        let top = root(&mut parent, body);
-        if place[top] == usize::MAX {
-            place[top] = found.len();
-            found.push(Island::default());
+        let number = *place[root(&mut parent, body)].get_or_insert(sizes.len());
+        if number == sizes.len() {
+            sizes.push(0);
         }
-        found[place[top]].contacts.push(c);
+        sizes[number] += 1;
+        numbers.push(number);
+    }
+    if sizes.len() == 1 {
+        return vec![Island { contacts }];
+    }
+    let mut found: Vec<Island> =
+        sizes.into_iter().map(|size| Island { contacts: Vec::with_capacity(size) }).collect();
+    for (contact, number) in contacts.into_iter().zip(numbers) {
+        found[number].contacts.push(contact);
     }
     found
 }

@@ -1,6 +1,6 @@
 //! What is known of pairs of bodies, and the queries about them.
 
-use crate::clearance::{Clearance, apart_along_until, approach, bound_along, have_few_vertices};
+use crate::clearance::{Clearance, Placed, apart_along_until, approach, bound_along, have_few_vertices};
 #[cfg(feature = "audit")]
 use crate::concluded::conclude;
 use crate::contact::ContactPoint;
@@ -128,8 +128,9 @@ impl Pair {
 
     /// Are the bodies further apart than this at a time, as follows from what is known of them?
     pub(crate) fn is_beyond(&self, margin: f64, bodies: [&RigidBody; 2], time: f64) -> bool {
-        let along = |normal| bound_along(normal, DVec3::ZERO, bodies, time, 0.0);
-        self.clearance.is_some_and(|known| known.bound(bodies, time, 0.0) > margin)
+        let placed = Placed::at(bodies, time);
+        let along = |normal| bound_along(normal, DVec3::ZERO, &placed, 0.0);
+        self.clearance.is_some_and(|known| known.bound(&placed, 0.0) > margin)
             || self.normal.and_then(along).is_some_and(|apart| apart > margin)
     }
 
@@ -206,7 +207,8 @@ fn proven_clear_until(
 ) -> Result<f64, QueryError> {
     let (now, length) = (window.start(), window.length());
     let needed = pair.separation() * (1.0 + SLACK);
-    if pair.clearance.is_some_and(|known| known.bound([a, b], now, length) > needed) {
+    let placed = Placed::at([a, b], now);
+    if pair.clearance.is_some_and(|known| known.bound(&placed, length) > needed) {
         return Ok(window.end());
     }
     if bound_from_centers([a, b], now, length) > needed {
@@ -214,7 +216,7 @@ fn proven_clear_until(
     }
     let spins = [a, b].map(|body| body.flight.angular_velocity());
     let is_apart_along = |normal: DVec3| {
-        let bound = |spin| bound_along(normal, spin, [a, b], now, length);
+        let bound = |spin| bound_along(normal, spin, &placed, length);
         spins.into_iter().filter_map(bound).any(|bound| bound > needed)
     };
     if pair.normal.is_some_and(is_apart_along) {
@@ -229,7 +231,7 @@ fn proven_clear_until(
         pair.axes.failed();
     }
     // Worth the distance where it will do, or where no direction is known, or none from the present poses of bodies whose vertices are few.
-    let poses = [a, b].map(|body| body.pose_at(now));
+    let poses = placed.poses;
     let will_do = pair.measured == Some(now) && pair.apart - approach([a, b]) * length > needed;
     let is_old = pair.contacts.is_empty() && have_few_vertices([a, b]);
     let is_known = pair.clearance.is_some_and(|known| known.poses == poses);
@@ -239,7 +241,7 @@ fn proven_clear_until(
     {
         let known = Clearance { poses, distance: found.lower };
         (pair.clearance, pair.normal) = (Some(known), Some(found.normal));
-        if known.bound([a, b], now, length) > needed {
+        if known.bound(&placed, length) > needed {
             return Ok(window.end());
         }
     }

@@ -36,6 +36,7 @@ impl System {
                 spares: places.iter().filter_map(|&k| self.spares.get(k).copied()).collect(),
                 reach: core::mem::take(&mut self.reach),
                 factor: self.factor.take(),
+                wide: None,
                 is_conforming: false,
                 has_joints: self.has_joints,
                 is_row: self.is_row,

@@ -16,7 +16,8 @@ pub(super) enum Pace {
 impl System {
     /// Sweeps over all blocks until the residual is no more than what may be left, so many at most; the residual.
     pub(super) fn sweep_until(&mut self, targets: &[f64], accuracy: Accuracy, pace: Pace, most: u32) -> f64 {
-        let mut wide = Wide::new(self, targets);
+        let mut wide = self.wide.take().unwrap_or_else(|| Wide::new(self));
+        wide.fill(self, targets);
         let mut off = wide.sweep(0, None);
         let mut best = (off.most, wide.kept());
         let mut descent = (pace == Pace::Conjugate).then(Descent::default);
@@ -34,6 +35,7 @@ impl System {
             wide.take_back(best.1);
         }
         wide.write(self);
+        self.wide = Some(wide);
         self.residual(targets)
     }
 
@@ -99,8 +101,9 @@ pub(super) mod tests {
         let crowd = column(64, 10.0);
         let enough = crowd.enough(ACCURACY);
         let is_swept = |crowd: &System, (most, mean): (f64, f64), accuracy: Accuracy| {
-            let has_room = Wide::new(crowd, &[0.0; 64]).sweep(0, None).has_room;
-            crowd.is_swept(Off { most, mean, has_room }, accuracy)
+            let mut wide = Wide::new(crowd);
+            wide.fill(crowd, &[0.0; 64]);
+            crowd.is_swept(Off { most, mean, has_room: wide.sweep(0, None).has_room }, accuracy)
         };
         let swept = |most: f64, mean: f64| is_swept(&crowd, (most, mean), ACCURACY);
         assert!(swept(enough, enough) && swept(40.0 * enough, 0.2 * enough));

@@ -3,6 +3,7 @@
 use super::ContactPoint;
 use super::block::Block;
 use super::factor::Factor;
+use super::lanes::Wide;
 use super::law::Law;
 use super::solver_body::SolverBody;
 use crate::velocity::Velocity;
@@ -20,6 +21,7 @@ pub(crate) struct System {
     pub(super) reach: Vec<f64>,
     /// Kept from solution to solution.
     pub(super) factor: Option<Factor>,
+    pub(super) wide: Option<Wide>,
     /// More than eight contacts of one pair.
     pub(super) is_conforming: bool,
     pub(super) has_joints: bool,
@@ -66,7 +68,8 @@ impl System {
         let has_joints = contacts.iter().any(|contact| contact.row.is_some());
         let impulses = vec![[0.0; 3]; blocks.len()];
         let (spares, is_row) = (Vec::new(), is_row(&bodies, &blocks));
-        Self { bodies, blocks, impulses, spares, reach, factor: None, is_conforming, has_joints, is_row }
+        let (factor, wide) = (None, None);
+        Self { bodies, blocks, impulses, spares, reach, factor, wide, is_conforming, has_joints, is_row }
     }
 
     /// For flights of this length in which contacts have these least rates: what closes by more than the room that it has ends them.

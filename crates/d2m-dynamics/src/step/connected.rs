@@ -22,19 +22,22 @@ pub(super) struct Group {
     pub(super) members: Vec<usize>,
     /// All contacts of the members within the margin; in order after [`Group::sort`].
     pub(super) contacts: Vec<ContactPoint>,
-    /// Pairs whose contacts are among those or that have none, ascending.
+    /// Pairs whose contacts are among those or that have none; ascending after [`Group::sort`].
     measured: Vec<Key>,
+    /// Are all pairs of a body among those? By body number.
+    is_measured: Vec<bool>,
     /// Joints whose rows are among the contacts, ascending.
     joints: Vec<usize>,
 }
 
 impl Group {
     pub(super) fn new(bodies: usize) -> Self {
-        Self { is_member: vec![false; bodies], ..Self::default() }
+        Self { is_member: vec![false; bodies], is_measured: vec![false; bodies], ..Self::default() }
     }
 
     pub(super) fn sort(&mut self) {
         self.members.sort_unstable();
+        self.measured.sort_unstable();
         self.contacts.sort_by_key(|c| (c.a, c.b));
     }
 
@@ -165,35 +168,38 @@ impl Step<'_> {
             body.is_dynamic() || follows
         };
         let ring: Vec<usize> = ring.iter().copied().filter(begins).collect();
-        let new: Vec<Key> =
-            self.partners(&ring).into_iter().filter(|&key| !group.has_measured(key)).collect();
+        let mut new = self.partners(&ring);
+        new.retain(|&(a, b)| !(group.is_measured[a] || group.is_measured[b]));
+        ring.iter().for_each(|&i| group.is_measured[i] = true);
         group.measured.extend(&new);
-        group.measured.sort_unstable();
         let sim = &*self.sim;
         let (most, step) = (self.margin, self.end - time);
         // Poses at one instant are the same however often flights from there are planned.
         let mut known = Vec::new();
         let mut unknown = Vec::new();
         for key in new {
-            match sim.pairs.get(&key).filter(|pair| pair.measured == Some(time)) {
-                None => unknown.push(key),
-                Some(pair) if pair.contacts.is_empty() && !self.expected.contains_key(&key) => {}
-                Some(_) => known.push(key),
+            match sim.pairs.get(&key) {
+                Some(pair) if pair.measured == Some(time) => {
+                    if !pair.contacts.is_empty() || self.expected.contains_key(&key) {
+                        known.push(key);
+                    }
+                }
+                pair => unknown.push((key, pair)),
             }
         }
-        let mut found = map_owned(unknown, FEW_ITEMS, |key| {
-            let (gap, reach) =
-                sim.pairs.get(&key).map_or((sim.options.gap, 1.0), |pair| (pair.gap, pair.reach));
+        let mut found = map_owned(unknown, FEW_ITEMS, |(key, pair)| {
+            let (gap, reach) = pair.map_or((sim.options.gap, 1.0), |pair| (pair.gap, pair.reach));
             // What is further apart than the present motion leads needs no row; if forces lead there all the same, the
             // flight ends at an event.
             let way = reach * APPROACH * sim.bodies[key.0].bound_approach(&sim.bodies[key.1]) * step;
             let margin = (AROUND * sim.options.gap + way).min(most);
             let (a, b) = (&sim.bodies[key.0], &sim.bodies[key.1]);
-            let is_far = sim.pairs.get(&key).is_some_and(|pair| pair.is_beyond(margin, [a, b], time));
+            let is_far = pair.is_some_and(|pair| pair.is_beyond(margin, [a, b], time));
             let measured = if is_far {
                 Ok(Measured { apart: margin, ..Measured::default() })
             } else {
-                measure(&sim.bodies, key, time, margin, gap, sim.material(key.0, key.1), sim.contacts(key))
+                let before = pair.map_or(&[][..], |pair| &pair.contacts);
+                measure(&sim.bodies, key, time, margin, gap, sim.material(key.0, key.1), before)
             };
             (key, Some(measured))
         });

@@ -151,7 +151,8 @@ impl Step<'_> {
             group.warm(&part.rests, 1.0);
         }
         let settled = |i: usize| group.is_member[i] || !bodies[i].is_dynamic() || bodies[i].held;
-        let within = group.contacts.iter().filter(|c| settled(c.a) && settled(c.b)).copied().collect();
+        let mut within = Vec::with_capacity(group.contacts.len());
+        within.extend(group.contacts.iter().filter(|c| settled(c.a) && settled(c.b)));
         let mut known: BTreeMap<usize, Solved> = BTreeMap::new();
         for part in before {
             if let Some(first) = part.bodies.first() {

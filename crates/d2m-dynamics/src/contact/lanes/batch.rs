@@ -9,7 +9,9 @@ use glam::DVec3;
 /// How impulses move the bodies of four pairs, and which blocks are between them.
 #[derive(Clone, Debug)]
 pub(super) struct Batch {
-    /// Of the first and the second bodies, in the list of velocities.
+    /// The first and the second bodies, by their places in the system; none in empty lanes.
+    pairs: [Option<[usize; 2]>; 4],
+    /// The same in the list of velocities, where empty lanes have the one behind the others.
     bodies: [[u32; 4]; 2],
     inverse_masses: [Quad; 2],
     /// By columns.
@@ -34,27 +36,25 @@ pub(super) struct Pushes<D> {
 }
 
 impl Batch {
-    /// For these pairs of bodies, four at most; empty lanes push a body behind the others.
-    pub(super) fn new(pairs: &[[usize; 2]], bodies: &[SolverBody], rows: Range<usize>) -> Self {
-        let mut batch = Self {
-            bodies: [[bodies.len() as u32; 4]; 2],
-            inverse_masses: [Quad([0.0; 4]); 2],
-            inverse_inertias: [[Quad([0.0; 4]); 9]; 2],
-            rows,
-        };
-        for (lane, pair) in pairs.iter().enumerate() {
-            for (side, &number) in pair.iter().enumerate() {
+    pub(super) fn new(pairs: [Option<[usize; 2]>; 4], rows: Range<usize>) -> Self {
+        let none = Quad([0.0; 4]);
+        Self { pairs, bodies: [[0; 4]; 2], inverse_masses: [none; 2], inverse_inertias: [[none; 9]; 2], rows }
+    }
+
+    /// How impulses move the bodies now.
+    pub(super) fn fill(&mut self, bodies: &[SolverBody]) {
+        self.bodies = [[bodies.len() as u32; 4]; 2];
+        for (lane, pair) in self.pairs.iter().enumerate() {
+            for (side, &number) in pair.iter().flatten().enumerate() {
                 let body = &bodies[number];
-                batch.bodies[side][lane] = number as u32;
-                batch.inverse_masses[side].0[lane] = body.inverse_mass;
-                for (entry, value) in
-                    batch.inverse_inertias[side].iter_mut().zip(body.inverse_inertia.to_cols_array())
-                {
-                    entry.0[lane] = value;
+                self.bodies[side][lane] = number as u32;
+                self.inverse_masses[side].0[lane] = body.inverse_mass;
+                let entries = body.inverse_inertia.to_cols_array();
+                for (quad, value) in self.inverse_inertias[side].iter_mut().zip(entries) {
+                    quad.0[lane] = value;
                 }
             }
         }
-        batch
     }
 
     #[inline(always)]

@@ -115,8 +115,7 @@ impl Side for Cones {
         let holds = D::if_greater(length, limit * limit, zero, D::load(&self.stops));
         let step = D::load(&self.step);
         let wanted = [own[1] - t * step, own[2] - u * step];
-        let shorten =
-            (limit / (wanted[0] * wanted[0] + wanted[1] * wanted[1]).sqrt()).min(D::splat(1.0));
+        let shorten = (limit / (wanted[0] * wanted[0] + wanted[1] * wanted[1]).sqrt()).min(D::splat(1.0));
         let slides = [wanted[0] * shorten, wanted[1] * shorten];
         [
             along,

@@ -85,43 +85,48 @@ pub(super) fn layers(system: &System, has_kind: impl Fn(usize) -> bool) -> Vec<V
 }
 
 impl<S: Side> Group<S> {
-    pub(super) fn new(system: &System, targets: &[f64], layers: &[Vec<OfPair>]) -> Self {
+    /// Lanes for the blocks of these pairs, without numbers.
+    pub(super) fn new(layers: &[Vec<OfPair>]) -> Self {
+        let chunks = || layers.iter().flat_map(|layer| layer.chunks(4));
+        let most = |pairs: &[OfPair]| pairs.iter().map(|pair| pair.blocks.len()).max().unwrap_or_default();
+        let sides = chunks().map(most).sum();
         let mut group = Self {
-            batches: Vec::new(),
-            sides: Vec::new(),
-            places: Vec::new(),
-            impulses: Vec::new(),
-            begun: Vec::new(),
-            way: Vec::new(),
-            count: 0,
+            batches: Vec::with_capacity(chunks().count()),
+            sides: vec![S::EMPTY; sides],
+            places: Vec::with_capacity(sides),
+            impulses: vec![[Quad([0.0; 4]); 3]; sides],
+            begun: vec![[Quad([0.0; 4]); 3]; sides],
+            way: vec![[Quad([0.0; 4]); 3]; sides],
+            count: layers.iter().flatten().map(|pair| pair.blocks.len()).sum(),
         };
-        for pairs in layers.iter().flat_map(|layer| layer.chunks(4)) {
-            let start = group.sides.len();
-            let most = pairs.iter().map(|pair| pair.blocks.len()).max().unwrap_or_default();
-            for row in 0..most {
-                group.sides.push(S::EMPTY);
-                let side = &mut group.sides[start + row];
-                let mut places = [None; 4];
-                let mut impulses = [Quad([0.0; 4]); 3];
-                for (lane, pair) in pairs.iter().enumerate() {
-                    let Some(k) = pair.blocks.clone().nth(row) else { continue };
-                    let spare = system.spares.get(k).copied().unwrap_or(f64::INFINITY);
-                    side.put(lane, &system.blocks[k], targets[k], spare);
-                    places[lane] = Some(k);
-                    for (i, own) in system.impulses[k].into_iter().enumerate() {
-                        impulses[i].0[lane] = own;
-                    }
-                    group.count += 1;
-                }
-                group.places.push(places);
-                group.impulses.push(impulses);
+        for pairs in chunks() {
+            let start = group.places.len();
+            for row in 0..most(pairs) {
+                let place = |lane: usize| pairs.get(lane).and_then(|pair| pair.blocks.clone().nth(row));
+                group.places.push([place(0), place(1), place(2), place(3)]);
             }
-            let bodies: Vec<[usize; 2]> = pairs.iter().map(|pair| pair.bodies).collect();
-            group.batches.push(Batch::new(&bodies, &system.bodies, start..group.sides.len()));
+            let bodies = |lane: usize| pairs.get(lane).map(|pair| pair.bodies);
+            let bodies = [bodies(0), bodies(1), bodies(2), bodies(3)];
+            group.batches.push(Batch::new(bodies, start..group.places.len()));
         }
-        group.begun.clone_from(&group.impulses);
-        group.way.clone_from(&group.impulses);
         group
+    }
+
+    /// The numbers of the system, with these targets.
+    pub(super) fn fill(&mut self, system: &System, targets: &[f64]) {
+        for batch in &mut self.batches {
+            batch.fill(&system.bodies);
+        }
+        for ((places, side), own) in self.places.iter().zip(&mut self.sides).zip(&mut self.impulses) {
+            for (lane, place) in places.iter().enumerate() {
+                let Some(k) = *place else { continue };
+                let spare = system.spares.get(k).copied().unwrap_or(f64::INFINITY);
+                side.put(lane, &system.blocks[k], targets[k], spare);
+                for (quad, impulse) in own.iter_mut().zip(system.impulses[k]) {
+                    quad.0[lane] = impulse;
+                }
+            }
+        }
     }
 
     pub(super) fn write(&self, impulses: &mut [[f64; 3]]) {

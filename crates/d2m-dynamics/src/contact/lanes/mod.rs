@@ -61,15 +61,23 @@ pub(super) struct Descent {
 }
 
 impl Wide {
-    pub(super) fn new(system: &System, targets: &[f64]) -> Self {
-        let mut velocities: Vec<Velocity> = system.bodies.iter().map(|body| body.velocity).collect();
-        velocities.push(Velocity::default());
+    /// For the blocks of a system, without numbers.
+    pub(super) fn new(system: &System) -> Self {
         let is_cone = |k: usize| matches!(system.blocks[k].law, Law::Cone { .. });
         Self {
-            velocities,
-            cones: Group::new(system, targets, &layers(system, is_cone)),
-            lines: Group::new(system, targets, &layers(system, |k| !is_cone(k))),
+            velocities: vec![Velocity::default(); system.bodies.len() + 1],
+            cones: Group::new(&layers(system, is_cone)),
+            lines: Group::new(&layers(system, |k| !is_cone(k))),
         }
+    }
+
+    /// The numbers that the system has now, with these targets.
+    pub(super) fn fill(&mut self, system: &System, targets: &[f64]) {
+        for (velocity, body) in self.velocities.iter_mut().zip(&system.bodies) {
+            *velocity = body.velocity;
+        }
+        self.cones.fill(system, targets);
+        self.lines.fill(system, targets);
     }
 
     /// So many times two sweeps, forth and back; how far blocks are from their law then.

@@ -35,8 +35,13 @@ fn drawn(state: &mut u64, count: usize) -> (System, Vec<f64>) {
             for _ in 0..1 + (draw(state).abs() * 5.0) as usize {
                 let normal = vector(state).normalize();
                 let law = Law::Range { lo: -0.5, hi: 0.5, softness: 0.1 };
-                let row =
-                    JointRow { is_angular: draw(state) > 0.0, law, pushing: 0.0, target: 0.0, equation: None };
+                let row = JointRow {
+                    is_angular: draw(state) > 0.0,
+                    law,
+                    pushing: 0.0,
+                    target: 0.0,
+                    equation: None,
+                };
                 contacts.push(ContactPoint {
                     normal,
                     tangents: tangents(normal),
@@ -90,7 +95,8 @@ fn sweeps_are_those_of_one_block_after_the_other() {
     let mut kinds = [0; 2];
     for count in [1, 2, 3, 5, 12, 12, 40] {
         let (mut system, targets) = drawn(state, count);
-        let begun = Wide::new(&system, &targets);
+        let mut begun = Wide::new(&system);
+        begun.fill(&system, &targets);
         let is_line = |&k: &usize| matches!(system.blocks[k].law, Law::Range { .. });
         let mut order: Vec<usize> = (0..system.blocks.len()).collect();
         order.sort_by_key(is_line);
@@ -125,7 +131,8 @@ fn velocities_follow_from_impulses() {
     let state = &mut 11;
     let (mut system, targets) = drawn(state, 30);
     let free = system.velocities();
-    let mut wide = Wide::new(&system, &targets);
+    let mut wide = Wide::new(&system);
+    wide.fill(&system, &targets);
     wide.sweep(6, Some(&mut Descent::default()));
     wide.write(&mut system);
     for (block, own) in system.blocks.iter().zip(&system.impulses) {
