@@ -9,8 +9,8 @@ use crate::contact::point::{JointRow, Material, upright};
 use crate::contact::{ContactPoint, tangents};
 use crate::drawn::{draw, vector};
 use crate::velocity::Velocity;
-use d2m_lanes::{InstructionSet, Task, run_on};
-use glam::{DMat3, DVec3};
+use d2m_lanes::{InstructionSet, run_on};
+use glam::DMat3;
 
 /// Some bodies and a ground, with up to five contacts or rows between two of them.
 fn drawn(state: &mut u64, count: usize) -> (System, Vec<f64>) {
