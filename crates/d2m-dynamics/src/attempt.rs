@@ -186,8 +186,10 @@ impl Problem<'_> {
         let spins: Vec<DVec3> = free.iter().map(|body| body.velocity.angular).collect();
         let velocities = |c: &ContactPoint| [c.a, c.b].map(|body| free[place(body)].velocity);
         let in_turn = |c: &ContactPoint| in_common_turn(c, velocities(c), span.remaining);
-        let turning: Vec<ContactPoint> = contacts.iter().map(in_turn).collect();
-        let mut system = System::new(free, &turning, place).for_flights(&contacts, &targets, span.remaining);
+        let running: Vec<[f64; 2]> = contacts.iter().map(in_turn).collect();
+        let mut system = System::new(free, &contacts, place)
+            .for_flights(&contacts, &targets, span.remaining)
+            .with_running(&running);
         system.warm_start(&contacts);
         let found = Found {
             contacts,

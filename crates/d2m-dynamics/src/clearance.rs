@@ -56,9 +56,9 @@ pub(crate) fn are_spheres_apart(a: &RigidBody, b: &RigidBody, time: f64, end: f6
 /// Two bodies where their flights have them at a time.
 #[derive(Clone, Copy)]
 pub(crate) struct Placed<'s> {
-    bodies: [&'s RigidBody; 2],
+    pub(crate) bodies: [&'s RigidBody; 2],
     pub(crate) poses: [Pose; 2],
-    now: f64,
+    pub(crate) now: f64,
 }
 
 impl<'s> Placed<'s> {

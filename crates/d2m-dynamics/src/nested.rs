@@ -25,7 +25,7 @@
 //! A body that turns, too, lies within some distance of a part of its own axis, and a line with that radius, and with what that axis
 //! turns, stands for it. Where the outer body does not turn, the distance from it of that part at the start, less what both move, is a bound.
 
-use crate::clearance::{ROUNDING, sizes};
+use crate::clearance::{Placed, ROUNDING, sizes};
 use crate::hollow::free;
 use crate::parts::proven_until;
 use crate::rigid_body::{AXES_REACH, RigidBody};
@@ -38,13 +38,18 @@ const STILL: f64 = 1.0 / 16.0;
 /// Cosine of the angle between the spin and an axis of the mesh up to which that axis is taken: a fifth of a radian.
 const NEAR_AXIS: f64 = 0.98;
 
-/// A lower bound of the distance of two bodies in their flights from `now` on, for a time `tau`, from their centers.
-pub(crate) fn bound_from_centers([a, b]: [&RigidBody; 2], now: f64, tau: f64) -> f64 {
-    let offset = b.pose_at(now).translation - a.pose_at(now).translation;
-    let way = (b.flight.linear_velocity() - a.flight.linear_velocity()) * tau;
+/// A lower bound of the distance of two bodies in their flights from where they are on, for a time `tau`, from their centers.
+pub(crate) fn bound_from_centers(placed: &Placed<'_>, tau: f64) -> f64 {
+    let Placed { bodies: [a, b], poses, now } = *placed;
     let room = |outer: &RigidBody, inner: &RigidBody| outer.cavity - outer.rounding - inner.radius;
+    let most = room(a, b).max(room(b, a));
+    if most <= 0.0 {
+        return most;
+    }
+    let offset = poses[1].translation - poses[0].translation;
+    let way = (b.flight.linear_velocity() - a.flight.linear_velocity()) * tau;
     let apart = offset.length().max((offset + way).length());
-    room(a, b).max(room(b, a)) - apart - ROUNDING * sizes([a, b], now, tau)
+    most - apart - ROUNDING * sizes([a, b], now, tau)
 }
 
 /// Are two bodies further apart than `needed` in their flights from `now` on, for a time `tau`, as follows from the axis that one turns about?
@@ -373,8 +378,8 @@ mod tests {
             };
             let bodies = [&body(&ball), &body(&shell)];
             let tau = 0.02 * draw(state).abs();
-            let (bound, least) = (bound_from_centers(bodies, 1.0, tau), least(bodies, 1.0, tau));
-            assert_eq!(bound, bound_from_centers([bodies[1], bodies[0]], 1.0, tau));
+            let (bound, least) = (bound_from_centers(&Placed::at(bodies, 1.0), tau), least(bodies, 1.0, tau));
+            assert_eq!(bound, bound_from_centers(&Placed::at([bodies[1], bodies[0]], 1.0), tau));
             assert!(bound <= least, "{k}: {bound} > {least}");
             close += usize::from(bound > 0.6 * least);
         }

@@ -211,7 +211,7 @@ fn proven_clear_until(
     if pair.clearance.is_some_and(|known| known.bound(&placed, length) > needed) {
         return Ok(window.end());
     }
-    if bound_from_centers([a, b], now, length) > needed {
+    if bound_from_centers(&placed, length) > needed {
         return Ok(window.end());
     }
     let spins = [a, b].map(|body| body.flight.angular_velocity());

@@ -47,7 +47,6 @@ impl Block {
             None => (Law::PUSH, n, across),
         };
         let [t, u] = contact.tangents;
-        let running = if law.rows() == 3 { contact.running } else { [0.0; 2] };
         let mut block = Self {
             a,
             b,
@@ -59,10 +58,16 @@ impl Block {
             coupling: [0.0; 2],
             stopping: None,
             step: 0.0,
-            running,
+            running: [0.0; 2],
         };
+        block.run(contact.running);
         block.renew(bodies);
         block
+    }
+
+    /// Surfaces add this to the rates along the tangents, if these count.
+    pub(super) fn run(&mut self, running: [f64; 2]) {
+        self.running = if self.law.rows() == 3 { running } else { [0.0; 2] };
     }
 
     /// The bodies have other inertias.

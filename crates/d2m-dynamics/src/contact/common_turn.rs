@@ -4,16 +4,16 @@ use super::ContactPoint;
 use crate::velocity::Velocity;
 use glam::{DQuat, DVec3};
 
-/// The contact with the rates along its surface that it has in the middle of a flight of this length, where both bodies turn about its normal the
-/// same way.
+/// What surfaces that run add to the rates along a contact's tangents, with what these are in the middle of a flight of this length, where both bodies
+/// turn about its normal the same way.
 ///
 /// Centers fly straight in a flight. Along the tangent of their circle they would lead away from the axis, by (ω h)² r/2 in each
 /// flight, and what sticks would creep outward at ω² r h/2. Taken with the arms of the middle of the flight velocities are those of chords. Of the
 /// spins what both have in common about the normal counts: a ball that rolls turns about an axis in the surface, and its arm does not turn with it.
-pub(crate) fn in_common_turn(contact: &ContactPoint, [a, b]: [Velocity; 2], length: f64) -> ContactPoint {
+pub(crate) fn in_common_turn(contact: &ContactPoint, [a, b]: [Velocity; 2], length: f64) -> [f64; 2] {
     let [of_a, of_b] = [a, b].map(|velocity| velocity.angular.dot(contact.normal));
     if contact.row.is_some() || of_a * of_b <= 0.0 {
-        return *contact;
+        return contact.running;
     }
     let common = if of_a.abs() < of_b.abs() { of_a } else { of_b };
     // A turn by half of that in half of the flight, without functions that differ from platform to platform: by 2 atan(φ/2), not φ.
@@ -22,8 +22,7 @@ pub(crate) fn in_common_turn(contact: &ContactPoint, [a, b]: [Velocity; 2], leng
     let changed = |velocity: Velocity, arm: DVec3| velocity.angular.cross(turn * arm - arm);
     let added = changed(b, contact.arm_b) - changed(a, contact.arm_a);
     let [first, second] = contact.tangents.map(|tangent| tangent.dot(added));
-    let running = [contact.running[0] + first, contact.running[1] + second];
-    ContactPoint { running, ..*contact }
+    [contact.running[0] + first, contact.running[1] + second]
 }
 
 #[cfg(test)]
@@ -40,9 +39,9 @@ mod tests {
         let table = Velocity { linear: DVec3::ZERO, angular: spin };
         let slides = |linear: DVec3| {
             let body = Velocity { linear, angular: spin };
-            let contact = in_common_turn(&turned, [table, body], length);
-            let relative = body.of_point(contact.arm_b) - table.of_point(contact.arm_a);
-            let along = [0, 1].map(|k| contact.tangents[k].dot(relative) + contact.running[k]);
+            let running = in_common_turn(&turned, [table, body], length);
+            let relative = body.of_point(turned.arm_b) - table.of_point(turned.arm_a);
+            let along = [0, 1].map(|k| turned.tangents[k].dot(relative) + running[k]);
             along[0].hypot(along[1])
         };
         let middle = DQuat::from_rotation_y(0.5 * rate * length) * place;
@@ -50,7 +49,7 @@ mod tests {
         // What lies on something that stands still, or turns the other way, has the rates that it has.
         for angular in [DVec3::ZERO, -spin, DVec3::X * rate] {
             let other = Velocity { linear: DVec3::ZERO, angular };
-            assert_eq!(in_common_turn(&turned, [table, other], length).running, [0.0; 2]);
+            assert_eq!(in_common_turn(&turned, [table, other], length), [0.0; 2]);
         }
     }
 }

@@ -82,6 +82,14 @@ impl System {
         self
     }
 
+    /// With other rates of surfaces that run.
+    pub(crate) fn with_running(mut self, running: &[[f64; 2]]) -> Self {
+        for (block, running) in self.blocks.iter_mut().zip(running) {
+            block.run(*running);
+        }
+        self
+    }
+
     /// The bodies have other inertias and velocities, in which the impulses are contained.
     pub(crate) fn renew(&mut self) {
         for block in &mut self.blocks {

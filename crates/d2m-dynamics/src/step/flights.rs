@@ -44,22 +44,27 @@ impl Step<'_> {
             }
             !(stay_apart || spheres_apart)
         });
-        let jobs: Vec<(Key, Box<Pair>)> = keys
-            .into_iter()
-            .map(|key| (key, self.sim.pairs.remove(&key).unwrap_or_else(|| Box::new(Pair::new(gap)))))
+        self.report.queries += keys.len() as u64;
+        let sim = &mut *self.sim;
+        for &key in &keys {
+            sim.pairs.entry(key).or_insert_with(|| Box::new(Pair::new(gap)));
+        }
+        let (bodies, node_tests) = (&sim.bodies, sim.options.node_tests);
+        // Both ascend.
+        let mut wanted = keys.into_iter().peekable();
+        let jobs: Vec<(Key, &mut Pair)> = sim
+            .pairs
+            .iter_mut()
+            .filter_map(|(key, pair)| wanted.next_if_eq(key).map(|key| (key, &mut **pair)))
             .collect();
-        self.report.queries += jobs.len() as u64;
-        let (bodies, node_tests) = (&self.sim.bodies, self.sim.options.node_tests);
-        let answers = map_owned(jobs, FEW_ITEMS, |(key, mut pair)| {
+        let answers = map_owned(jobs, FEW_ITEMS, |(key, pair)| {
             let (a, b) = (&bodies[key.0], &bodies[key.1]);
             let until = end.min(a.horizon).min(b.horizon);
-            let answer =
-                Window::try_new(time, until).and_then(|window| fly(a, b, window, node_tests, &mut pair));
-            (key, pair, answer)
+            let answer = Window::try_new(time, until).and_then(|window| fly(a, b, window, node_tests, pair));
+            (key, answer)
         });
         let mut failed = None;
-        for (key, pair, answer) in answers {
-            self.sim.pairs.insert(key, pair);
+        for (key, answer) in answers {
             let (a, b) = (&self.sim.bodies[key.0], &self.sim.bodies[key.1]);
             let event = |time: f64, by: f64, cause: Cause| Event {
                 time,
