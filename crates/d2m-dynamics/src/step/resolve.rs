@@ -14,7 +14,7 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// Rounds of bodies that others press on, after which all that contacts connect with them are solved together.
-const MOST_ROUNDS: u32 = 10;
+const MOST_ROUNDS: u32 = 4;
 /// A solution that leads no point of a body's surface further off than this part of the gap in a step leaves its flight as it is:
 /// a sixty-fourth of [`LEEWAY`], so that all contacts of a body together stay within that.
 const SAME: f64 = 1.0 / 1024.0;
