@@ -51,12 +51,12 @@ impl RigidBody {
     /// L in its middle, and so have all the flights of a body that nothing meets. Under a pull it is the ω with (R I Rᵀ + G) ω = L + G ω₀.
     pub(crate) fn midpoint_spin(&self, angular_momentum: DVec3, h: f64, pull: Option<Pull>) -> DVec3 {
         let sum = angular_momentum + pull.map_or(DVec3::ZERO, |pull| pull.stiffness * pull.free);
-        let spin = |orientation: DQuat| match pull {
-            Some(_) => self.inverse_inertia_under(orientation, pull) * sum,
-            None => {
-                let r = DMat3::from_quat(orientation);
-                r * (self.inverse_inertia * (r.transpose() * sum))
+        let spin = |orientation: DQuat| {
+            if pull.is_some() {
+                return self.inverse_inertia_under(orientation, pull) * sum;
             }
+            let r = DMat3::from_quat(orientation);
+            r * (self.inverse_inertia * (r.transpose() * sum))
         };
         let mut omega = spin(self.orientation);
         for _ in 0..64 {

@@ -170,7 +170,9 @@ impl Step<'_> {
         let ring: Vec<usize> = ring.iter().copied().filter(begins).collect();
         let mut new = self.partners(&ring);
         new.retain(|&(a, b)| !(group.is_measured[a] || group.is_measured[b]));
-        ring.iter().for_each(|&i| group.is_measured[i] = true);
+        for &i in &ring {
+            group.is_measured[i] = true;
+        }
         group.measured.extend(&new);
         let sim = &*self.sim;
         let (most, step) = (self.margin, self.end - time);

@@ -32,7 +32,7 @@ fn drawn(state: &mut u64, count: usize) -> (System, Vec<f64>) {
             if draw(state).abs() > 0.4 {
                 continue;
             }
-            for _ in 0..1 + (draw(state).abs() * 5.0) as usize {
+            for _ in 0..=(draw(state).abs() * 5.0) as usize {
                 let normal = vector(state).normalize();
                 let law = Law::Range { lo: -0.5, hi: 0.5, softness: 0.1 };
                 let row = JointRow {
