@@ -16,15 +16,15 @@ pub(super) enum Pace {
 impl System {
     /// Sweeps over all blocks until the residual is no more than what may be left, so many at most; the residual.
     pub(super) fn sweep_until(&mut self, targets: &[f64], accuracy: Accuracy, pace: Pace, most: u32) -> f64 {
-        let mut wide = self.wide.take().unwrap_or_else(|| Wide::new(self));
-        wide.fill(self, targets);
+        let mut wide = self.wide.take().unwrap_or_else(|| Wide::new(&self.bodies, &self.blocks));
+        wide.fill(self.numbers(targets));
         let mut off = wide.sweep(0, None);
         let mut best = (off.most, wide.kept());
         let mut descent = (pace == Pace::Conjugate).then(Descent::default);
         let mut done = 0;
         while !self.is_swept(off, accuracy) && done < most {
             off = wide.sweep(BETWEEN / 2, descent.as_mut());
-            wide.move_bodies(self);
+            wide.move_bodies(&mut self.bodies);
             done += BETWEEN;
             if off.most < best.0 || pace == Pace::Steady {
                 best = (off.most, wide.kept());
@@ -34,7 +34,8 @@ impl System {
         if off.most > best.0 && !self.is_swept(off, accuracy) {
             wide.take_back(best.1);
         }
-        wide.write(self);
+        wide.move_bodies(&mut self.bodies);
+        wide.write(&mut self.impulses);
         self.wide = Some(wide);
         self.residual(targets)
     }
@@ -101,8 +102,8 @@ pub(super) mod tests {
         let crowd = column(64, 10.0);
         let enough = crowd.enough(ACCURACY);
         let is_swept = |crowd: &System, (most, mean): (f64, f64), accuracy: Accuracy| {
-            let mut wide = Wide::new(crowd);
-            wide.fill(crowd, &[0.0; 64]);
+            let mut wide = Wide::new(&crowd.bodies, &crowd.blocks);
+            wide.fill(crowd.numbers(&[0.0; 64]));
             crowd.is_swept(Off { most, mean, has_room: wide.sweep(0, None).has_room }, accuracy)
         };
         let swept = |most: f64, mean: f64| is_swept(&crowd, (most, mean), ACCURACY);

@@ -3,7 +3,7 @@
 use super::ContactPoint;
 use super::block::Block;
 use super::factor::Factor;
-use super::lanes::Wide;
+use super::lanes::{Numbers, Wide};
 use super::law::Law;
 use super::solver_body::SolverBody;
 use crate::velocity::Velocity;
@@ -80,6 +80,12 @@ impl System {
         };
         self.spares = contacts.iter().zip(targets).map(spare).collect();
         self
+    }
+
+    /// What lanes take over, with these targets.
+    pub(super) fn numbers<'s>(&'s self, targets: &'s [f64]) -> Numbers<'s> {
+        let Self { bodies, blocks, impulses, spares, .. } = self;
+        Numbers { bodies, blocks, impulses, targets, spares }
     }
 
     /// With other rates of surfaces that run.

@@ -1,7 +1,7 @@
 //! All blocks of one kind, in batches.
 
 use super::super::block::Block;
-use super::super::system::System;
+use super::super::solver_body::SolverBody;
 use super::Order;
 use super::batch::{Batch, Ends, Pushes};
 use crate::velocity::Velocity;
@@ -23,7 +23,7 @@ pub(super) trait Side: Clone {
     fn relaxed<D: Doubles>(&self, rates: &[D; 3], own: &[D; 3]) -> [D; 3];
     /// The nearest impulses that the laws allow.
     fn projected<D: Doubles>(&self, impulses: &[D; 3]) -> [D; 3];
-    /// How far impulses are from what the laws ask for, as rates; see [`System::residual`].
+    /// How far impulses are from what the laws ask for, as rates; see `System::residual`.
     fn natural_map<D: Doubles>(&self, rates: &[D; 3], own: &[D; 3]) -> D;
     fn pushes<D: Doubles>(&self, impulses: &[D; 3]) -> Pushes<D>;
 }
@@ -40,6 +40,17 @@ pub(super) struct Group<S> {
     begun: Vec<[Quad; 3]>,
     way: Vec<[Quad; 3]>,
     pub(super) count: usize,
+}
+
+/// The numbers of a system that lanes take over.
+#[derive(Clone, Copy)]
+pub(in crate::contact) struct Numbers<'s> {
+    pub(in crate::contact) bodies: &'s [SolverBody],
+    pub(in crate::contact) blocks: &'s [Block],
+    pub(in crate::contact) impulses: &'s [[f64; 3]],
+    pub(in crate::contact) targets: &'s [f64],
+    /// Empty: no flight follows.
+    pub(in crate::contact) spares: &'s [f64],
 }
 
 /// What is left of a group: the largest natural map, the sum of the squares of all.
@@ -59,23 +70,26 @@ pub(super) struct OfPair {
 
 /// Layers of pairs of which no two share a body that impulses move: each pair is in the first layer behind those of the pairs before it that
 /// share one with it. So layer after layer, forth or back, blocks meet the velocities that they would meet one after the other.
-pub(super) fn layers(system: &System, has_kind: impl Fn(usize) -> bool) -> Vec<Vec<OfPair>> {
-    let mut next = vec![0usize; system.bodies.len()];
+pub(super) fn layers(
+    bodies: &[SolverBody],
+    blocks: &[Block],
+    has_kind: impl Fn(&Block) -> bool,
+) -> Vec<Vec<OfPair>> {
+    let mut next = vec![0usize; bodies.len()];
     let mut layers: Vec<Vec<OfPair>> = Vec::new();
-    let bodies_of = |k: usize| [system.blocks[k].a, system.blocks[k].b];
-    let mut first = 0;
-    while first < system.blocks.len() {
-        let bodies = bodies_of(first);
-        let belongs = |&k: &usize| bodies_of(k) == bodies && has_kind(k) == has_kind(first);
-        let end = (first + 1..system.blocks.len()).find(|k| !belongs(k)).unwrap_or(system.blocks.len());
-        if has_kind(first) {
-            let moved = || bodies.into_iter().filter(|&body| system.is_moved(body));
-            let layer = moved().map(|body| next[body]).max().unwrap_or_default();
-            moved().for_each(|body| next[body] = layer + 1);
-            layers.resize_with(layers.len().max(layer + 1), Vec::new);
-            layers[layer].push(OfPair { bodies, blocks: first..end });
-        }
-        first = end;
+    let mut end = 0;
+    let is_alike =
+        |one: &Block, other: &Block| (one.a, one.b, has_kind(one)) == (other.a, other.b, has_kind(other));
+    for of_pair in blocks.chunk_by(is_alike) {
+        let first = end;
+        end += of_pair.len();
+        let Some(block) = of_pair.first().filter(|block| has_kind(block)) else { continue };
+        let pair = [block.a, block.b];
+        let moved = || pair.into_iter().filter(|&body| bodies[body].inverse_mass > 0.0);
+        let layer = moved().map(|body| next[body]).max().unwrap_or_default();
+        moved().for_each(|body| next[body] = layer + 1);
+        layers.resize_with(layers.len().max(layer + 1), Vec::new);
+        layers[layer].push(OfPair { bodies: pair, blocks: first..end });
     }
     // Lanes of a batch have about as many blocks.
     for layer in &mut layers {
@@ -112,17 +126,17 @@ impl<S: Side> Group<S> {
         group
     }
 
-    /// The numbers of the system, with these targets.
-    pub(super) fn fill(&mut self, system: &System, targets: &[f64]) {
+    /// These numbers in the lanes of their blocks.
+    pub(super) fn fill(&mut self, numbers: Numbers<'_>) {
         for batch in &mut self.batches {
-            batch.fill(&system.bodies);
+            batch.fill(numbers.bodies);
         }
         for ((places, side), own) in self.places.iter().zip(&mut self.sides).zip(&mut self.impulses) {
             for (lane, place) in places.iter().enumerate() {
                 let Some(k) = *place else { continue };
-                let spare = system.spares.get(k).copied().unwrap_or(f64::INFINITY);
-                side.put(lane, &system.blocks[k], targets[k], spare);
-                for (quad, impulse) in own.iter_mut().zip(system.impulses[k]) {
+                let spare = numbers.spares.get(k).copied().unwrap_or(f64::INFINITY);
+                side.put(lane, &numbers.blocks[k], numbers.targets[k], spare);
+                for (quad, impulse) in own.iter_mut().zip(numbers.impulses[k]) {
                     quad.0[lane] = impulse;
                 }
             }

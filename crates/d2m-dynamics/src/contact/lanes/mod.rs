@@ -11,11 +11,13 @@ mod lines;
 #[cfg(test)]
 mod tests;
 
+use super::block::Block;
 use super::law::Law;
-use super::system::System;
+use super::solver_body::SolverBody;
 use crate::velocity::Velocity;
 use cones::Cones;
 use d2m_lanes::{Doubles, Lanes, Quad, Task, run};
+pub(super) use group::Numbers;
 use group::{Group, layers};
 use lines::Lines;
 
@@ -61,23 +63,23 @@ pub(super) struct Descent {
 }
 
 impl Wide {
-    /// For the blocks of a system, without numbers.
-    pub(super) fn new(system: &System) -> Self {
-        let is_cone = |k: usize| matches!(system.blocks[k].law, Law::Cone { .. });
+    /// For these blocks of a system, without numbers.
+    pub(super) fn new(bodies: &[SolverBody], blocks: &[Block]) -> Self {
+        let is_cone = |block: &Block| matches!(block.law, Law::Cone { .. });
         Self {
-            velocities: vec![Velocity::default(); system.bodies.len() + 1],
-            cones: Group::new(&layers(system, is_cone)),
-            lines: Group::new(&layers(system, |k| !is_cone(k))),
+            velocities: vec![Velocity::default(); bodies.len() + 1],
+            cones: Group::new(&layers(bodies, blocks, is_cone)),
+            lines: Group::new(&layers(bodies, blocks, |block| !is_cone(block))),
         }
     }
 
-    /// The numbers that the system has now, with these targets.
-    pub(super) fn fill(&mut self, system: &System, targets: &[f64]) {
-        for (velocity, body) in self.velocities.iter_mut().zip(&system.bodies) {
+    /// With the numbers that these blocks and bodies have now.
+    pub(super) fn fill(&mut self, numbers: Numbers<'_>) {
+        for (velocity, body) in self.velocities.iter_mut().zip(numbers.bodies) {
             *velocity = body.velocity;
         }
-        self.cones.fill(system, targets);
-        self.lines.fill(system, targets);
+        self.cones.fill(numbers);
+        self.lines.fill(numbers);
     }
 
     /// So many times two sweeps, forth and back; how far blocks are from their law then.
@@ -94,17 +96,16 @@ impl Wide {
     }
 
     /// Writes the velocities to the bodies.
-    pub(super) fn move_bodies(&self, system: &mut System) {
-        for (body, velocity) in system.bodies.iter_mut().zip(&self.velocities) {
+    pub(super) fn move_bodies(&self, bodies: &mut [SolverBody]) {
+        for (body, velocity) in bodies.iter_mut().zip(&self.velocities) {
             body.velocity = *velocity;
         }
     }
 
-    /// Writes the impulses and the velocities to the system.
-    pub(super) fn write(&self, system: &mut System) {
-        self.move_bodies(system);
-        self.cones.write(&mut system.impulses);
-        self.lines.write(&mut system.impulses);
+    /// Writes the impulses of the blocks.
+    pub(super) fn write(&self, impulses: &mut [[f64; 3]]) {
+        self.cones.write(impulses);
+        self.lines.write(impulses);
     }
 
     #[inline(always)]
