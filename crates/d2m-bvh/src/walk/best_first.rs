@@ -1,6 +1,6 @@
 //! Best first inside one sub-window.
 
-use super::effort::{self, BATCH, Level, MEMORY_CHECK, ON_ITS_WAY};
+use super::effort::{self, BATCH, Level, MEMORY_CHECK, ON_ITS_WAY, Passing};
 use super::expansion::{KEY_SCALE, NodePairExpander};
 use super::parting::Parting;
 use super::queue::{Bucket, Item};
@@ -8,7 +8,7 @@ use super::state::{Outcome, Search, State, Step, SubWindow, triangle_count};
 use crate::Budget;
 use crate::gap::widest_gap::widest_normal;
 use crate::pair::boxes::node_scale::NodeScale;
-use crate::pair::boxes::node_test::{Expanded, NodeFrame};
+use crate::pair::boxes::node_test::{Expanded, Further, NodeFrame};
 use crate::pair::motion::frame::{Frame, RelativeMotion};
 use crate::pair::motion::units::sum_down;
 use crate::pair::scene::MovingScene;
@@ -76,7 +76,7 @@ impl<'s> Search<'s> {
             }
             self.scratch.counts.frames += 1;
             if batches == 1 || least > Level::of(state.parting.as_ref()).fresh_until(state.frame_key) {
-                state.renew_frames::<L>(least);
+                state.renew_frames::<L>(least, effort::boxes_may_pass(batches));
             }
             if patience.is_due(batches, self.scratch.counts.triangle_looks) {
                 self.thin_out::<L>(&mut state, progress, &mut batch, &mut patience);
@@ -231,7 +231,7 @@ fn length_of(SubWindow { start, end }: SubWindow) -> f64 {
 impl State<'_> {
     /// The frame at a key, and those of the node tests from there on.
     #[inline(always)]
-    fn renew_frames<L: Lanes>(&mut self, key: u32) {
+    fn renew_frames<L: Lanes>(&mut self, key: u32, passing: Passing) {
         self.frame = self.motion.frame::<L::Doubles>(f64::from(key) * self.step);
         let left = time_left(self.limit, key);
         self.node_frames = [
@@ -239,6 +239,11 @@ impl State<'_> {
             NodeFrame::new::<L::Doubles>(&self.frame, &self.expander.scales[1], Expanded::B, left),
         ];
         self.frame_key = key;
+        if passing == Passing::Tested {
+            for frame in &mut self.node_frames {
+                frame.further = Further::Passing(left);
+            }
+        }
         if let Some(witness) = self.parting {
             self.turn_parting(&witness);
         }

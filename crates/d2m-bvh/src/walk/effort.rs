@@ -7,6 +7,7 @@
 //! | mechanism | starts | gives up, or waits | where it is |
 //! |---|---|---|---|
 //! | bounds of second order for pairs of triangles | at once | – | [`separating_axis`] |
+//! | boxes that pass each other | after 48 batches of a sub-window | – | `boxes/passing` |
 //! | bounds of third order | after 192 tests of the search, or 16 of the pair | – | [`separating_axis`] |
 //! | directions that turn with the bodies | after 1024 tests of the search, or 24 of the pair | – | `triangle_pair/turning` |
 //! | a pair followed at once | when it is handed out | its time grew by 1/16, or 64 steps when out of turn | `pairs` |
@@ -79,6 +80,23 @@ impl Level {
             Self::Grazed => GRAZING_PATIENCE,
         }
     }
+}
+
+/// Whether boxes are tested for passing each other.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Passing {
+    Untested,
+    Tested,
+}
+
+/// Batches of a sub-window before that: about as many as ordinary queries have, which end with what meets first and need not know what
+/// never would.
+const ORDINARY_BATCHES: u32 = 48;
+
+/// Whether boxes are tested for passing each other after so many batches of a sub-window.
+#[inline(always)]
+pub(crate) const fn boxes_may_pass(batches: u32) -> Passing {
+    if batches > ORDINARY_BATCHES { Passing::Tested } else { Passing::Untested }
 }
 
 /// Tests of pairs of triangles of one search, and of one pair, that use bounds of second order; later ones use those of third

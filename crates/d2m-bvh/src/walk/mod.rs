@@ -9,6 +9,8 @@ pub(crate) mod effort;
 pub(crate) mod expansion;
 mod pairs;
 mod parting;
+#[cfg(test)]
+mod passing_tests;
 pub(crate) mod queue;
 pub(crate) mod scratch;
 #[cfg(test)]

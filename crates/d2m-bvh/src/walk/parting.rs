@@ -7,6 +7,7 @@
 use super::expansion::DirectedSpan;
 use super::state::State;
 use crate::pair::boxes::node_scale::NodeScale;
+use crate::pair::boxes::node_test::Further;
 use crate::pair::boxes::whole_span::{PlacedPose, SpanDirection, SpanFrame};
 use crate::pair::scene::MovingScene;
 use crate::pair::triangles::separating_axis::BackwardCertificate;
@@ -54,8 +55,8 @@ impl State<'_> {
         let by_b = witness.line(&self.frame);
         let by_a = self.frame.rotation.transposed::<F64x4>().transform(by_b).normalize_or_zero();
         let [of_a, of_b] = &mut self.node_frames;
-        of_a.parting = Some(by_a.as_vec3().to_array());
-        of_b.parting = Some(by_b.as_vec3().to_array());
+        of_a.further = Further::Along(by_a.as_vec3().to_array());
+        of_b.further = Further::Along(by_b.as_vec3().to_array());
         self.ahead = Some(BackwardCertificate { reversed: self.frame, direction: by_b });
     }
 }

@@ -18,10 +18,10 @@ use d2m_motion::ConstantTwist;
 use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
 
-const EXPANDED: [Expanded; 2] = [Expanded::A, Expanded::B];
+pub(super) const EXPANDED: [Expanded; 2] = [Expanded::A, Expanded::B];
 
 /// Eight triangles of very different size and shape around the origin.
-fn soup(random: &mut KnuthRandom) -> MeshTree {
+pub(super) fn soup(random: &mut KnuthRandom) -> MeshTree {
     let mut vertices = Vec::new();
     for _ in 0..8 {
         let middle = random.vector();
@@ -33,7 +33,7 @@ fn soup(random: &mut KnuthRandom) -> MeshTree {
     MeshTree::new(Surface::soup(vertices).into_mesh(TriMesh::try_new))
 }
 
-fn moving(random: &mut KnuthRandom, apart: f64, speed: f64, spin: f64) -> ConstantTwist {
+pub(super) fn moving(random: &mut KnuthRandom, apart: f64, speed: f64, spin: f64) -> ConstantTwist {
     let q = DQuat::from_xyzw(random.signed(), random.signed(), random.signed(), random.signed() + 1.2);
     ConstantTwist::try_new(random.vector() * apart, q, random.vector() * speed, random.vector() * spin)
         .unwrap()

@@ -31,8 +31,18 @@ pub(crate) struct NodeFrame {
     least: f32,
     /// The error of speeds that does not depend on the boxes.
     speed_floor: f32,
-    /// A direction, by the wide body's axes, along which pairs are tested besides their own.
-    pub(crate) parting: Option<[f32; 3]>,
+    /// What pairs are tested by besides their own directions.
+    pub(crate) further: Further,
+}
+
+/// What pairs of boxes are tested by besides their own directions.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Further {
+    None,
+    /// This direction, by the wide body's axes.
+    Along([f32; 3]),
+    /// Whether they pass each other: no time after this one matters, counted from the frame.
+    Passing(f32),
 }
 
 /// The body whose nodes are expanded against boxes of the other one.
@@ -54,7 +64,7 @@ impl NodeFrame {
         omega_wide: [0.0; 4],
         least: 0.0,
         speed_floor: 0.0,
-        parting: None,
+        further: Further::None,
     };
 
     /// `left`: no later time matters, counted from the frame (a hint).
@@ -94,7 +104,7 @@ impl NodeFrame {
             omega_wide: omega_wide.narrow(),
             least: scale.acceleration * left * HINT + scale.speed_floor,
             speed_floor: scale.speed_floor,
-            parting: None,
+            further: Further::None,
         }
     }
 }
@@ -112,8 +122,10 @@ pub(crate) struct Placed {
     pub(super) speed_margin: f32,
     /// Least closing speed that is reckoned with.
     pub(super) least: f32,
-    /// A direction along which it is tested besides the boxes' own.
-    pub(crate) parting: Option<[f32; 3]>,
+    /// Of a sphere about its center that holds it.
+    pub(super) radius: f32,
+    /// What it is tested by besides the boxes' own directions.
+    pub(super) further: Further,
 }
 
 impl Placed {
@@ -155,7 +167,8 @@ impl Placed {
             speed_margin: SPEED_ERROR * (norm(&velocity) + scale.spin[0] * wide.extent + spin_speed)
                 + frame.speed_floor,
             least: frame.least,
-            parting: frame.parting,
+            radius,
+            further: frame.further,
             velocity,
         }
     }
