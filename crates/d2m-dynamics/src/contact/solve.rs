@@ -272,6 +272,21 @@ mod tests {
         assert!(left > 1e-3 && solved(0.6) == left && solved(0.4) < 0.5 * left, "{left}");
     }
 
+    /// What sweeps leave at each link of a chain adds up along it: of a long row that is solved directly, also where it would do for a crowd.
+    #[test]
+    fn long_rows_are_solved_directly() {
+        let count = 200;
+        let left = |is_row: bool| {
+            let mut column = System { is_row, ..column(count, 10.0) };
+            column.bodies.iter_mut().for_each(|body| body.velocity.linear.x = 1e4);
+            let (precision, relative, slow) = (1e-9, 1.0 / 1024.0, f64::INFINITY);
+            let accuracy = Accuracy { precision, relative, aim: 1.0, company: Company::Crowd, slow };
+            column.solve(&vec![0.0; count], accuracy, Start::Present)
+        };
+        let (row, crowd) = (left(true), left(false));
+        assert!(crowd > 1e-3 && row < 0.1 * crowd, "{row} {crowd}");
+    }
+
     /// What lies between two bodies of which one follows a motion may be taken along, by a few bodies; of a crowd sweeps come first.
     #[test]
     fn crowds_are_swept_before_anything_sticks() {
