@@ -44,7 +44,7 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
         }
         Further::Passing(left) => {
             let passing = PassingBoxes { wide, placed, line: pair.line, velocity: rate, left };
-            passing.apart_until(passing.across(rates).or(best).lasts_for(scale), scale)
+            passing.apart_until(best.lasts_for(scale), scale)
         }
     }
 }

@@ -1,7 +1,6 @@
 //! Boxes that pass each other: apart for the rest of the time that matters, although along no one direction.
 //!
-//! While two bodies pass, their boxes are apart along a line across their way, which turns away slowly, and soon after that along the way
-//! itself, along which they still overlap now. Until the first of these ends pairs would wait in the queue, whole trees of them, only to be
+//! While two bodies pass, their boxes are apart along a line across their way, and soon after that along the way itself, along which they still overlap now. Until the first of these ends pairs would wait in the queue, whole trees of them, only to be
 //! found far apart then. So the time that boxes are apart along one direction is followed by spheres: let it end at s₁, and let no time after S
 //! matter. A point of the single box, seen from one of a lane's box, is at
 //!
@@ -20,12 +19,10 @@
 //! Where c + v s₁ is longer than 2⁶⁴ its square is infinite and its length is not a number; where it is not, no product with a speed
 //! overflows, for speeds of more than 2⁶² have an infinite margin. What is not a number is apart for no longer.
 
-use super::gap_and_rate::{GapAndRate, RateBounds, along};
 use super::node_scale::NodeScale;
 use super::node_test::Placed;
-use crate::gap::discriminant::unit;
 use d2m_lanes::Lanes;
-use d2m_lanes::three::{dot, minus, times};
+use d2m_lanes::three::dot;
 use d2m_mesh::margin::UNIT_F32;
 use d2m_mesh::node::WideNode;
 
@@ -44,14 +41,6 @@ pub(super) struct PassingBoxes<'p, L> {
 }
 
 impl<L: Lanes> PassingBoxes<'_, L> {
-    /// Along the line of the centers when it is the shortest: less what it has along their velocity.
-    #[inline(always)]
-    pub(super) fn across(&self, rates: RateBounds<L>) -> GapAndRate<L> {
-        let part = dot(&self.line, &self.velocity) / dot(&self.velocity, &self.velocity);
-        let direction = unit(&minus(&self.line, &times(&self.velocity, part)));
-        along(self.wide, self.placed, direction, &self.velocity, rates)
-    }
-
     /// The times until which boxes are apart; infinite where they are so for all that matters. `until`: times until which they are known to
     /// be apart, not positive or not a number where nothing is known.
     #[inline(always)]
