@@ -13,7 +13,7 @@ use d2m_motion::ConstantTwist;
 use d2m_testing::KnuthRandom;
 use glam::DVec3;
 
-/// Times at which distances are looked at: both ends of the span, and between.
+/// Times at which distances are computed: both ends of the span, and between.
 const TIMES: usize = 24;
 
 /// The boxes of a node of each body, the nodes of `side` expanded.
@@ -83,7 +83,7 @@ fn boxes_that_pass_each_other_are_apart_all_the_time() {
             for index in (0..WIDTH).map(|lane| WIDTH + lane) {
                 let Apart { usual, passing, left, unit } = boxes.apart(1, index);
                 for lane in 0..WIDTH {
-                    // What the further direction proves is looked at, too.
+                    // Times that end before the window are judged, too.
                     let until = passing[lane];
                     if until.is_nan() || until <= 0.0 {
                         continue;

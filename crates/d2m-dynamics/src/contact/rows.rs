@@ -104,7 +104,7 @@ fn near(contact: &ContactPoint) -> f64 {
     contact.distance.min(contact.gap)
 }
 
-/// By how much a contact may close where room is shared. What has none, as where flights would lead too close, is asked for all the same.
+/// By how much a contact may close where room is shared; at most zero, so that it stays or opens, where flights would lead too close.
 fn share(contact: &ContactPoint, widest: f64) -> f64 {
     let room = contact.shared_room();
     if room > 0.0 { room * (MUCH * near(contact) / widest).clamp(LEAST_SHARE, 1.0) } else { room }

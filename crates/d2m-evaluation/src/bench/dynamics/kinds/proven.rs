@@ -7,7 +7,7 @@ use d2m::verify::{self, Body, Claim, Mesh, Query, Solid, TimeSpan, Verdict};
 use d2m_dynamics::{Kind, Segment};
 use std::sync::Arc;
 
-/// Segments of a run that are looked at, evenly over it, besides the last one.
+/// Segments of a run that are proven, evenly over it, besides the last one.
 const SAMPLES: usize = 16;
 /// Steps of a proof at most.
 const STEPS: u64 = 1 << 12;

@@ -63,7 +63,7 @@ impl Case {
 /// The scene, with these laws: without any it would always go right.
 pub(super) fn under(scene: Scene, laws: Vec<Law>) -> Result<Trial, Error> {
     if laws.is_empty() {
-        return Err(format!("{}: nothing is asked of it", scene.name).into());
+        return Err(format!("{}: the scene has no law to be judged by", scene.name).into());
     }
     Ok(Trial { scene, laws, is_crushing: false })
 }
