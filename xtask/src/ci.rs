@@ -24,9 +24,11 @@ const fn step(name: &'static str, arguments: &'static [&'static str]) -> Step {
     Step { name, arguments }
 }
 
-/// In order of cost: what fails fast comes first. `features` stands for a check of each library.
+/// In order of cost: what fails fast comes first. `locks` holds the lock of the Python package, which is no member of the workspace, against the
+/// manifests of the crates that it is built from. `features` stands for a check of each library.
 const STEPS: &[Step] = &[
     step("format", &["fmt", "--all", "--", "--check"]),
+    step("locks", &["fetch", "--locked", "--manifest-path=crates/d2m-py/Cargo.toml"]),
     step("lints", &["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"]),
     step("features", &["check", "--locked", "--all-features", "-p=d2m"]),
     step("tests", &["test", "--workspace", "--locked", "--lib", "--bins", "--tests", "--examples"]),
