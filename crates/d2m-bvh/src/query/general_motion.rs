@@ -5,6 +5,7 @@
 //! distance that is larger by D: what it proves free is free. Where it finds a contact the span is shortened, with D
 //! like the square of the span, until D is a small part of the tolerance. docs/theory/motions.md, section 3.
 
+mod furthest;
 mod joints;
 mod plane;
 mod span_length;

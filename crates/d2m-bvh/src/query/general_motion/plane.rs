@@ -3,6 +3,7 @@
 //! Fitted twists deviate in every direction, so that bodies which slide past each other at a small gap are searched in spans as short
 //! as the root of the gap. Along the direction between them they hardly move: docs/theory/motions.md, section 3, "Plane".
 
+use super::furthest::{Furthest, Linear, Patience};
 use super::{Advance, EXPECTED, GROWTH};
 use crate::{Contact, Moving, SearchCounts};
 use d2m_interval::{Interval, IntervalVec3};
@@ -10,6 +11,7 @@ use d2m_lanes::UP;
 #[cfg(feature = "audit")]
 use d2m_mesh::audit::Place;
 use d2m_mesh::margin::length;
+use d2m_motion::Pose;
 use glam::DVec3;
 
 /// A plane is sought for spans of so many lengths of the last one at first, and of at least [`GROWTH`] of them.
@@ -17,13 +19,16 @@ const AHEAD: f64 = 64.0;
 /// The next span is this part, or this multiple, of one at least and at most.
 const LEAST_PART: f64 = 1.0 / 16.0;
 const MOST_PART: f64 = 16.0;
-/// Node tests that a plane counts for in a budget, besides its vertices.
+/// Node tests that a plane, or a search for a direction of one, counts for in a budget, besides the nodes that are searched for what
+/// reaches the furthest.
 const TESTS_A_PLANE: u64 = 128;
-/// Vertices whose supports cost as much as a test of two boxes.
-const VERTICES_A_TEST: usize = 4;
 /// More than the roundings of a support add up to, in parts of the terms that are added: turned directions, products with a vertex
 /// and their sums are fewer than 64 times half a unit in the last place of each.
 const ROUNDINGS: f64 = 32.0 * f64::EPSILON;
+/// Part of a radius that a direction's gap is estimated to at first, and the multiple of it from which on that is exact enough: more
+/// than what boxes are larger than flat sides in them.
+const ABOUT: f64 = 1.0 / 65_536.0; // 2⁻¹⁶
+const FAR_ABOUT: f64 = 16.0;
 /// Sums of a few numbers below this are finite.
 const MOST: f64 = f64::MAX / 64.0;
 /// Failures are followed by so many times more fitted spans until the next attempt.
@@ -49,10 +54,12 @@ struct Gap {
     beyond: f64,
     /// What the motions within the span may add.
     lost: f64,
+    /// Nodes that were examined.
+    nodes: u64,
 }
 
 impl Gap {
-    const UNKNOWN: Self = Self { beyond: f64::NEG_INFINITY, lost: f64::INFINITY };
+    const UNKNOWN: Self = Self { beyond: f64::NEG_INFINITY, lost: f64::INFINITY, nodes: 0 };
 
     /// About the part of the span, or the multiple of it, over which the gap may close: what is lost goes like its third power.
     fn part_that_closes(&self) -> f64 {
@@ -115,17 +122,26 @@ impl Reach {
         })
     }
 
-    /// The greatest value of each coefficient over the vertices of a body, with the errors; `sign` −1 for the least one.
-    fn furthest(&self, body: &Moving<'_>, sign: f64) -> [f64; 3] {
-        let mut most = [f64::NEG_INFINITY; 3];
-        for vertex in body.body.mesh().vertices() {
-            let e = *vertex - self.at;
-            for (most, (value, direction)) in most.iter_mut().zip(&self.controls) {
-                *most = most.max(sign * (value + direction.dot(e)));
-            }
-        }
-        most.map(|value| value + self.error)
+    /// The greatest value of each coefficient over the points of a body, with the errors: along n, or against it.
+    fn furthest(&self, search: &mut Furthest<'_>, sense: Sense) -> [f64; 3] {
+        let at = self.at;
+        let along = self.controls.map(|(value, gradient)| match sense {
+            Sense::Along => Linear { value, gradient, at },
+            Sense::Against => Linear { value, gradient, at }.opposite(),
+        });
+        let first = search.most(&along[0]);
+        // Over no time all three are the same.
+        let [second, third] =
+            [1, 2].map(|k| if along[k] == along[0] { first } else { search.most(&along[k]) });
+        [first, second, third].map(|value| value + self.error)
     }
+}
+
+/// Which way along a direction.
+#[derive(Clone, Copy)]
+enum Sense {
+    Along,
+    Against,
 }
 
 impl Advance<'_> {
@@ -160,8 +176,10 @@ impl Advance<'_> {
         }
     }
 
-    /// Of the contact's normal and those of its two triangles, from A to B, the one along which the bodies are furthest apart now.
+    /// Of the contact's normal and those of its two triangles, from A to B, the one along which the bodies are furthest apart now, if they
+    /// are at all.
     fn best_normal(&mut self, contact: &Contact) -> Option<DVec3> {
+        self.count(&SearchCounts { node_tests: TESTS_A_PLANE, ..SearchCounts::default() });
         let poses = self.poses_at(self.now);
         let triangles = [contact.triangle_a, contact.triangle_b];
         let faces = [0, 1].map(|k| {
@@ -169,10 +187,40 @@ impl Advance<'_> {
             let n = poses[k].0.transform_vector((q - p).cross(r - p)).normalize_or_zero();
             if n.dot(contact.normal) < 0.0 { -n } else { n }
         });
-        let gap = |n: DVec3| self.gap_along(n, Interval::point(self.now), self.now).beyond;
         let all = [contact.normal, faces[0], faces[1]];
-        let best = all.into_iter().filter(|n| n.is_finite() && *n != DVec3::ZERO);
-        best.map(|n| (n, gap(n))).max_by(|x, y| x.1.total_cmp(&y.1)).map(|(n, _)| n)
+        let known = all.into_iter().filter(|n| n.is_finite() && *n != DVec3::ZERO);
+        let poses = poses.map(|(pose, _)| pose);
+        let gaps = known.map(|n| (n, self.gap_now(n, &poses, triangles)));
+        let best = gaps.max_by(|x, y| x.1.total_cmp(&y.1));
+        best.filter(|(_, gap)| *gap > 0.0).map(|(n, _)| n)
+    }
+
+    /// About how far the bodies are apart along a direction now, less the least distance that counts as free; no more than zero where
+    /// they are not. It chooses a direction and proves nothing.
+    fn gap_now(&mut self, n: DVec3, poses: &[Pose; 2], triangles: [u32; 2]) -> f64 {
+        let [a, b] = [0, 1].map(|k| self.bodies[k].body);
+        let [along, against] = poses.map(|pose| Linear {
+            value: n.dot(pose.translation - poses[1].translation),
+            gradient: pose.rotation.inverse() * n,
+            at: pose.at,
+        });
+        let against = against.opposite();
+        let mut of_a = Furthest::beginning_with(a, triangles[0]);
+        let mut of_b = Furthest::beginning_with(b, triangles[1]);
+        let level = self.options.min_separation + self.tolerance;
+        let mut gap = f64::INFINITY;
+        // Many boxes reach about as far as a side does: exactly only where that matters.
+        for slack in [ABOUT * a.radius().min(b.radius()), 0.0] {
+            let high = of_a.about_most(&along, Patience { slack, enough: -level - of_b.first(&against) });
+            let low = of_b.about_most(&against, Patience { slack, enough: -level - high });
+            gap = -level - (high + low);
+            if gap <= 0.0 || gap > FAR_ABOUT * slack {
+                break;
+            }
+        }
+        let node_tests = of_a.nodes + of_b.nodes;
+        self.count(&SearchCounts { node_tests, ..SearchCounts::default() });
+        gap
     }
 
     /// How far the bodies stay apart along the direction up to a time; `None` where time has no numbers in between.
@@ -182,10 +230,9 @@ impl Advance<'_> {
         if !(self.now < middle && middle < until) {
             return None;
         }
-        let vertices: usize = self.bodies.iter().map(|body| body.body.mesh().vertex_count()).sum();
-        let node_tests = TESTS_A_PLANE + (vertices / VERTICES_A_TEST) as u64;
-        self.count(&SearchCounts { node_tests, ..SearchCounts::default() });
-        Some(self.gap_along(n, Interval::new(self.now, until), middle))
+        let gap = self.gap_along(n, Interval::new(self.now, until), middle);
+        self.count(&SearchCounts { node_tests: TESTS_A_PLANE + gap.nodes, ..SearchCounts::default() });
+        Some(gap)
     }
 
     /// How far the bodies are apart at all times of a span, along a direction from A to B.
@@ -195,13 +242,15 @@ impl Advance<'_> {
         let [Some(ahead), Some(behind)] = [a, b].map(|body| Reach::new(body, n, span, middle, origin)) else {
             return Gap::UNKNOWN;
         };
-        let (high, low) = (ahead.furthest(a, 1.0), behind.furthest(b, -1.0));
+        let [mut of_a, mut of_b] = [a, b].map(|body| Furthest::new(body.body));
+        let (high, low) =
+            (ahead.furthest(&mut of_a, Sense::Along), behind.furthest(&mut of_b, Sense::Against));
         // −(high + low), rounded down: the sum is off by half a unit in its last place.
         let gaps = high.into_iter().zip(low).map(|(high, low)| -(high + low).next_up());
         // Four roundings at most, of half a unit in the last place each.
         let level = (self.options.min_separation + self.tolerance) * length(n) * (1.0 + 4.0 * f64::EPSILON);
         let beyond = (gaps.fold(f64::INFINITY, f64::min) - level).next_down();
-        Gap { beyond, lost: ahead.error + behind.error }
+        Gap { beyond, lost: ahead.error + behind.error, nodes: of_a.nodes + of_b.nodes }
     }
 }
 
@@ -240,8 +289,9 @@ mod tests {
             for half in [0.015_625, 0.007_812_5, 0.003_906_25] {
                 let span = Interval::new(middle - half, middle + half);
                 let reach = Reach::new(&body, n, span, middle, DVec3::ONE).unwrap();
-                for sign in [-1.0, 1.0] {
-                    let most = reach.furthest(&body, sign).into_iter().fold(f64::NEG_INFINITY, f64::max);
+                for (sense, sign) in [(Sense::Against, -1.0), (Sense::Along, 1.0)] {
+                    let most = reach.furthest(&mut Furthest::new(&tree), sense);
+                    let most = most.into_iter().fold(f64::NEG_INFINITY, f64::max);
                     for k in -8..=8 {
                         let (pose, _) = motion.pose_and_twist(middle + half * f64::from(k) / 8.0);
                         for vertex in tree.mesh().vertices() {
