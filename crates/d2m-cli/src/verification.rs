@@ -202,18 +202,6 @@ impl<'b> Bodies<'b> {
         let claim = Claim::Clear { span, distance: distance.next_down() };
         Proof(verify(&verifier.query(&bodies, window, &QueryOptions::default()), &claim, DEFAULT_STEPS))
     }
-
-    /// The same of what is said of bodies that part.
-    pub(crate) fn prove_departure(
-        &self,
-        pair: [usize; 2],
-        window: Window,
-        options: &QueryOptions,
-        answer: &Departure,
-    ) -> Proof {
-        let (verifier, bodies) = self.pair(pair);
-        Proof(verifier.departure(&bodies, window, options, answer, DEFAULT_STEPS))
-    }
 }
 
 /// What of several proofs counts: a refutation, else what is not proven, else all steps.

@@ -2,7 +2,7 @@
 
 use crate::answer::Answer;
 use crate::fault::{Fault, OrRaise};
-use crate::options::{QueryKeywords, REPORT, window};
+use crate::options::{QueryKeywords, window};
 use crate::query::MovingPair;
 use crate::supervise::{Supervision, Watch, supervised};
 use d2m::verify::{MeshFault, Verdict as Found, Verifier};
@@ -112,7 +112,7 @@ impl From<Found> for Verdict {
 
 /// Proves an answer of `time_of_contact`, or one of `departure`, again, by interval arithmetic alone: code that shares no search, tree or margin with the engine.
 ///
-/// Motions and keywords as the query had them; `steps`: an end to the work, by default some seconds.
+/// Motions and keywords as the query had them, also `start` (of a `departure` it says nothing); `steps`: an end to the work, by default some seconds.
 ///
 /// Raises `InputError` as `time_of_contact`. Returns a `Verdict`.
 ///
@@ -126,7 +126,7 @@ impl From<Found> for Verdict {
 /// >>> d2m_ccd.verify(box, box, separated, falling).status
 /// 'refuted'
 #[pyfunction]
-#[pyo3(signature = (a, b, answer, motion_a=None, motion_b=None, *, window=(0.0, 1.0), tolerance=None, min_separation=0.0, radius=None, solid=None, mode="accurate", steps=None))]
+#[pyo3(signature = (a, b, answer, motion_a=None, motion_b=None, *, window=(0.0, 1.0), tolerance=None, min_separation=0.0, radius=None, solid=None, start="report", mode="accurate", steps=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords")]
 pub(crate) fn verify(
     py: Python<'_>,
@@ -140,10 +140,11 @@ pub(crate) fn verify(
     min_separation: f64,
     radius: Option<&Bound<'_, PyAny>>,
     solid: Option<&Bound<'_, PyAny>>,
+    start: &str,
     mode: &str,
     steps: Option<u64>,
 ) -> PyResult<Verdict> {
-    let (start, node_tests, time_limit) = (REPORT, None, None);
+    let (node_tests, time_limit) = (None, None);
     let keywords = QueryKeywords { tolerance, min_separation, mode, start, node_tests, time_limit };
     let options = keywords.options()?;
     let window = self::window(window)?;

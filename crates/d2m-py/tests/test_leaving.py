@@ -26,6 +26,11 @@ def test_what_is_in_contact_at_the_start_is_let_go() -> None:
     found = d2m_ccd.departure(tree, tree, motion, window=window)
     assert (found.start, found.left, found.answer) == ("overlapping", met.left, met)
     assert d2m_ccd.verify(tree, tree, found, motion, window=window).status == "verified"
+    # The answer alone: when they had parted is proven with it.
+    for answer, path in ((met, motion), (d2m_ccd.time_of_contact(tree, tree, {"v": [0, 0, 2]}, start="leave"), {"v": [0, 0, 2]})):
+        ends = window if answer is met else (0.0, 1.0)
+        assert d2m_ccd.verify(tree, tree, answer, path, window=ends, start="leave").status == "verified"
+        assert d2m_ccd.verify(tree, tree, answer, path, window=ends).status != "verified"
     staying = d2m_ccd.departure(tree, tree, {"x": [0, 0, 0.5], "v": [0, 0, 0.1]})
     assert staying.left is None and staying.answer.clear_until == 0.0
     results = d2m_ccd.batch(tree, tree, motion, window=np.array([window] * 3), start="leave")

@@ -286,6 +286,9 @@ pub enum Reason {
     /// Bodies that are said to touch do not part along the normal of the answer.
     #[error("the bodies were not found to part along the normal of the answer")]
     NotParted,
+    /// Bodies that are in contact at the start, which was to be let go, had not parted as the answer says.
+    #[error("bodies in contact at the start were not found to part before that")]
+    NotLeft,
     /// No point was found inside of both bodies that are said to overlap.
     #[error("the bodies were not found to overlap")]
     NotOverlapping,

@@ -141,7 +141,12 @@ pub(super) fn deviation(body: &Moving<'_>, pose: &Pose, time: f64, origin: DVec3
 }
 
 /// The contact with the data of these two triangles, and this normal.
-fn of_pair(contact: Contact, bodies: &[Moving<'_>; 2], triangles: [u32; 2], normal: DVec3) -> Contact {
+pub(super) fn of_pair(
+    contact: Contact,
+    bodies: &[Moving<'_>; 2],
+    triangles: [u32; 2],
+    normal: DVec3,
+) -> Contact {
     let placed = PlacedTriangles::new(bodies, triangles, contact.time_lo);
     let near = placed.distance();
     let closing_speed = placed.closing_speed(&near, normal);

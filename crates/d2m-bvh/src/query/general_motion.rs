@@ -325,19 +325,20 @@ impl<'a> Advance<'a> {
         };
         let room = contact.separation - self.options.min_separation;
         let early = options.mode == Mode::Capoeira && deviation <= PART_OF_EARLY_ROOM * room;
-        if small || early {
-            let contact = Contact { tolerance: contact.tolerance.max(inner) + 2.0 * deviation, ..contact };
-            let contact = Contact { tolerance: contact.tolerance.max(tolerance), ..contact };
+        if small {
+            let tolerance = tolerance.max(contact.tolerance.max(inner) + 2.0 * deviation);
+            let contact = Contact { tolerance, ..contact };
             return Ok(Step::Answer(TimeOfContact::Contact(self.true_contact(contact))));
         }
+        if early {
+            let found = self.of_same_triangles(contact.time_lo, &contact);
+            let evidence = Evidence::Early;
+            return Ok(Step::Answer(TimeOfContact::Contact(Contact { evidence, tolerance, ..found })));
+        }
         if self.options.mode == Mode::Exists
-            && let Some(time) =
-                self.meeting().found_near([contact.triangle_a, contact.triangle_b], contact.time_lo)
+            && let Some(time) = self.time_of_meeting(&contact)
         {
-            let tolerance = contact.tolerance.max(self.tolerance);
-            let contact =
-                Contact { time_lo: time, time_hi: time, evidence: Evidence::Near, tolerance, ..contact };
-            return Ok(Step::Answer(TimeOfContact::Contact(self.true_contact(contact))));
+            return Ok(Step::Answer(TimeOfContact::Contact(self.met_at(time, &contact, tolerance))));
         }
         self.shorten(&contact, &Shortfall { deviation, floor, tolerance, until });
         if contact.time_lo <= self.now && self.longest <= 0.0 {

@@ -109,7 +109,7 @@ impl ContactSpan {
 /// at an end of the window or within `resolution` of a time at which the distance is proven to be at most L = `min_separation` + δ; clear
 /// times shorter than `resolution` may be inside. A body that jumps, or that passes through another one from one number for time to the next, is
 /// in no contact that is proven: that step is undecided. `resolution`: a time; `None`: 1e-6 of the window.
-/// [`Mode::Exists`] counts as accurate: spans end at first contacts.
+/// Every [`Mode`] counts as accurate: spans end at first contacts.
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, Moving, QueryOptions, SpanStatus, TriMesh, Window, contact_spans};
@@ -145,9 +145,7 @@ pub fn contact_spans(
     CoveredPair::try_new([a, b], window)?;
     let rounded = Rounded::try_new([&a, &b])?;
     let mut options = rounded.options([a.body, b.body], options)?;
-    if options.mode == Mode::Exists {
-        options.mode = Mode::Accurate;
-    }
+    options.mode = Mode::Accurate;
     let tolerance = tolerance_of(&[a, b], &options);
     let resolution = resolution.unwrap_or(RESOLUTION * window.length());
     let walk = Walk::new([a, b], window, &options, tolerance, resolution);

@@ -87,6 +87,16 @@ pub(super) struct Meeting<'m> {
 }
 
 impl Meeting<'_> {
+    fn is_near(&self, placed: &PlacedTriangles, near: &TriangleDistance) -> bool {
+        placed.bound_distance(near) <= self.separation + 0.5 * self.tolerance
+    }
+
+    /// Are two triangles certainly so near each other at this time?
+    pub(super) fn are_near(&self, triangles: [u32; 2], time: f64) -> bool {
+        let placed = PlacedTriangles::new(self.bodies, triangles, time);
+        self.is_near(&placed, &placed.distance())
+    }
+
     /// A time at which two triangles are certainly within the separation and half of the tolerance of each other; `None` when a
     /// few steps of Newton's method from `time` find none. No search of these motions can call that free: it would prove them
     /// apart by more than three quarters of the tolerance.
@@ -96,7 +106,7 @@ impl Meeting<'_> {
             time = time.clamp(first, last);
             let placed = PlacedTriangles::new(self.bodies, triangles, time);
             let near = placed.distance();
-            if placed.bound_distance(&near) <= self.separation + 0.5 * self.tolerance {
+            if self.is_near(&placed, &near) {
                 return Some(time);
             }
             let along = (near.point_b - near.point_a).normalize_or_zero();

@@ -9,7 +9,7 @@ use crate::output::{print_answer, progress_bar, short};
 use crate::report::{feature_field, start_in_json, start_word, vector};
 use crate::scene::{Scene, SceneBody};
 use crate::verification::{Bodies, Proof, joined};
-use d2m::bvh::{Contact, QueryOptions, Start, StartState, TimeOfContact, Window, departure, time_of_contact};
+use d2m::bvh::{Contact, QueryOptions, Start, StartState, TimeOfContact, Window, time_of_contact};
 use d2m::{BodyId, FirstContact, PairContact, WorldError};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -122,18 +122,7 @@ fn prove(scene: &Scene, rows: &[Row]) -> Result<Proof, Failure> {
         let [a, b] = pair;
         let reported = rows.iter().find(|row| row.bodies == [a, b] || row.bodies == [b, a]);
         let (pair, answer) = reported.map_or((pair, &first), |row| (row.bodies, &row.answer));
-        if options.start == Start::Report {
-            proofs.push(bodies.prove(pair, scene.window, &options, answer));
-            continue;
-        }
-        // The answer says when bodies have parted only of those that meet again.
-        let [a, b] = pair.map(|body| scene.bodies[body].moving());
-        let mut found =
-            departure(a, b, scene.window, &options).map_err(|error| Failure::at("--verify", error))?;
-        if let Some(row) = reported {
-            found.answer = row.answer;
-        }
-        proofs.push(bodies.prove_departure(pair, scene.window, &options, &found));
+        proofs.push(bodies.prove(pair, scene.window, &options, answer));
     }
     Ok(joined(proofs))
 }
@@ -230,5 +219,28 @@ fn departure_words(row: &Row, contact: &Contact) -> String {
         (Some(start), Some(left)) => {
             format!("; {} at the start, proven apart at {}", start_word(start), short(left.hi))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Out of the other one and into it again, of which the answer says nothing: it was proven that they part.
+    #[test]
+    fn what_meets_again_is_not_passed_over() {
+        let path = std::env::temp_dir().join(format!("d2m-meets-again-{}.json", std::process::id()));
+        let text = r#"{"start": "leave", "bodies": [{"name": "a", "mesh": "shape:box"}, {"name": "b", "mesh": "shape:box", "motion":
+            {"times": [0, 0.5, 1], "poses": [{"x": [0.5, 0, 0]}, {"x": [3, 0, 0]}, {"x": [0.5, 0, 0]}], "join": "linear"}}]}"#;
+        std::fs::write(&path, text).unwrap();
+        let scene = Scene::read(&path);
+        std::fs::remove_file(&path).unwrap();
+        let scene = scene.unwrap_or_else(|_| panic!("the scene is read"));
+        let found = scene.world(QueryOptions::default()).contacts(scene.window).unwrap();
+        let rows: Vec<Row> =
+            found.iter().map(|pair| Row::new(&scene, [pair.a, pair.b], pair.answer)).collect();
+        let is_proven = |rows: &[Row]| prove(&scene, rows).is_ok_and(|proof| proof.is_verified());
+        assert!(rows.len() == 1 && is_proven(&rows));
+        assert!(!is_proven(&[]));
     }
 }

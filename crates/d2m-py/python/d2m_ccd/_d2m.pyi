@@ -906,6 +906,7 @@ def verify(
     min_separation: _Float = 0.0,
     radius: _Radii = None,
     solid: _Solids = None,
+    start: _Start = "report",
     mode: _Mode = "accurate",
     steps: int | None = None,
 ) -> Verdict: ...

@@ -1,39 +1,33 @@
 //! What answers claim.
 
 use super::rounding::Scale;
-use super::witness::{clearance_fault, witness_fault};
+use super::witness::{are_near, clearance_fault, witness_fault};
 use super::{Claim, Reason, TimeSpan};
-use crate::{Clearance, ClearanceOptions, ContactSpan, Departure, SpanStatus};
+use crate::{Clearance, ClearanceOptions, ContactSpan, SpanStatus};
 use crate::{Contact, Mode, Moving, QueryOptions, StartState, TimeOfContact, Window};
-use d2m_bvh::{ClearanceStatus, Evidence};
+use d2m_bvh::{ClearanceStatus, Evidence, TimeBracket};
 
 /// The separation that may be left above s, in tolerances.
-const MOST_LEFT: f64 = 3.3;
+pub(super) const MOST_LEFT: f64 = 3.3;
 /// The resolution of spans as a part of the window, if none is given, and that at which bodies that stay in contact are watched.
-const RESOLUTION: f64 = 1e-6;
-/// The separation above s up to which bodies have not left each other for certain, in tolerances: they have where they are proven further apart
-/// than 3 of them, of which a search that stops knows as much as [`MOST_LEFT`] less; and steps from time to time there may double that.
-const NOT_LEFT: f64 = 2.0 * (3.0 + MOST_LEFT);
+pub(super) const RESOLUTION: f64 = 1e-6;
 /// The width of a clearance in tolerances, where that is more than its accuracy.
 const WIDTH: f64 = 4.0;
 
 /// How far bodies that touch are moved to part, at most, in errors of a distance: the engine moves them by 2⁹ of its own, which are smaller.
 const LAYER: f64 = 1024.0;
 
-const fn at(time: f64) -> TimeSpan {
+pub(super) const fn at(time: f64) -> TimeSpan {
     TimeSpan { from: time, to: time }
 }
 
-/// What an answer of [`time_of_contact`](crate::time_of_contact) about these bodies claims.
-///
-/// # Errors
-/// The reason why nothing could prove it: [`Reason::Malformed`], [`Reason::Tolerance`], [`Reason::Witness`], [`Reason::Distance`],
-/// [`Reason::NothingClaimed`].
-pub fn claim(
+/// What an answer claims of bodies that had parted then, or that nothing is let go of.
+pub(super) fn contact_claim(
     bodies: &[Moving<'_>; 2],
     window: Window,
     options: &QueryOptions,
     answer: &TimeOfContact,
+    left: Option<TimeBracket>,
 ) -> Result<Claim, Reason> {
     let clear = |to: f64| Claim::Clear {
         span: TimeSpan { from: window.start(), to },
@@ -50,7 +44,11 @@ pub fn claim(
             let is_span = window.start() <= contact.time_lo
                 && contact.time_lo <= contact.time_hi
                 && contact.time_hi <= window.end();
-            if !(contact.separation >= 0.0 && is_span) {
+            // A meeting that nothing is shown of has no later end.
+            let is_bracket = contact.evidence != Evidence::Early || contact.time_lo == contact.time_hi;
+            // Nothing, or the same, is said of when bodies had parted.
+            let is_left = contact.left.is_none() || contact.left == left;
+            if !(contact.separation >= 0.0 && is_span && is_bracket && is_left) {
                 return Err(Reason::Malformed);
             }
             let scale = Scale::new(bodies, window, options, contact.time_lo);
@@ -58,8 +56,11 @@ pub fn claim(
             if witness_fault(bodies, window, options, contact).is_some() {
                 return Err(Reason::Witness);
             }
-            if options.mode == Mode::Exists {
-                return meeting(contact, options, contact.evidence).ok_or(Reason::NothingClaimed);
+            if options.mode == Mode::Exists && contact.start == StartState::Apart {
+                // Of the time before it nothing is said, but of the start.
+                let apart = Claim::Clear { span: at(window.start()), distance: options.min_separation };
+                let met = meeting(contact, options, contact.evidence).ok_or(Reason::NothingClaimed)?;
+                return Ok(Claim::All(vec![apart, met]));
             }
             let mut claims = Vec::new();
             match contact.start {
@@ -82,7 +83,7 @@ pub fn claim(
                 StartState::Undecided => {}
             }
             let most = options.min_separation + MOST_LEFT * contact.tolerance;
-            if options.mode != Mode::Capoeira && contact.separation > most {
+            if options.mode == Mode::Accurate && contact.separation > most {
                 return Err(Reason::Distance);
             }
             let off = scale.error_of(contact);
@@ -114,68 +115,10 @@ fn meeting(contact: &Contact, options: &QueryOptions, evidence: Evidence) -> Opt
     })
 }
 
-/// What an answer of [`departure`](crate::departure) claims. Until they have left, or to the end of the window, the bodies are near each other in
-/// each part of the time that is as long as the engine's samples are apart: a contact after they had parted is not passed over in silence.
-///
-/// # Errors
-/// As [`claim`].
-pub fn departure_claim(
-    bodies: &[Moving<'_>; 2],
-    window: Window,
-    options: &QueryOptions,
-    answer: &Departure,
-) -> Result<Claim, Reason> {
-    let scale = Scale::new(bodies, window, options, window.start());
-    let within = |time: f64| Claim::Within {
-        span: at(time),
-        distance: options.min_separation + scale.most,
-        triangles: None,
-    };
-    // No shorter than two numbers for a time are apart.
-    let clock = window.start().abs().max(window.end().abs());
-    let every = (RESOLUTION * window.length()).max(2.0 * (clock.next_up() - clock));
-    let stay_until = |to: f64| Claim::Often {
-        span: TimeSpan { from: window.start(), to },
-        distance: options.min_separation + NOT_LEFT * scale.most,
-        every,
-    };
-    let mut claims = Vec::new();
-    match answer.start {
-        StartState::Apart => {}
-        StartState::Contained => claims.push(Claim::Held { time: window.start() }),
-        _ => claims.push(within(window.start())),
-    }
-    let Some(left) = answer.left else {
-        claims.push(claim(bodies, window, options, &answer.answer)?);
-        if answer.answer.contact().is_some() {
-            claims.extend([within(window.end()), stay_until(window.end())]);
-        }
-        return Ok(Claim::All(claims));
-    };
-    if !(window.start() <= left.lo && left.lo <= left.hi && left.hi <= window.end()) {
-        return Err(Reason::Malformed);
-    }
-    if answer.start == StartState::Apart {
-        // Bodies that begin apart leave nothing: what is said of the rest is said of all of the window.
-        if [left.lo, left.hi] != [window.start(); 2] {
-            return Err(Reason::Malformed);
-        }
-        claims.push(Claim::Clear { span: at(window.start()), distance: options.min_separation });
-    } else {
-        claims.push(within(left.lo));
-        // Further apart than s + δ, with δ at least as it was asked for.
-        claims.push(Claim::Clear { span: at(left.hi), distance: options.min_separation + scale.asked });
-        claims.push(stay_until(left.hi));
-    }
-    let rest = Window::try_new(left.hi, window.end()).map_err(|_| Reason::Malformed)?;
-    claims.push(claim(bodies, rest, options, &answer.answer)?);
-    Ok(Claim::All(claims))
-}
-
 /// What an answer of [`clearance`](crate::clearance) claims: the enclosure, its width, and for bodies that meet that they are apart before.
 ///
 /// # Errors
-/// As [`claim`].
+/// As [`claim`](super::claim).
 pub fn clearance_claim(
     bodies: &[Moving<'_>; 2],
     window: Window,
@@ -198,8 +141,13 @@ pub fn clearance_claim(
     if answer.status == ClearanceStatus::Contact && (lower > 0.0 || upper > WIDTH * scale.most) {
         return Err(Reason::Distance);
     }
+    if scale.accept(answer.tolerance).is_err() {
+        return Err(Reason::Tolerance);
+    }
     let above = WIDTH * scale.most;
-    if upper > 0.0 && clearance_fault(bodies, answer, scale.world_error, above).is_some() {
+    // Bodies that meet are within the tolerance of each other at the time of contact, or one holds the other.
+    let is_held = upper == 0.0 && !are_near(bodies, answer, above + scale.world_error);
+    if !is_held && clearance_fault(bodies, answer, scale.world_error, above).is_some() {
         return Err(Reason::Witness);
     }
     // The least distance is not below `lower`: above the number before it.
@@ -214,7 +162,9 @@ pub fn clearance_claim(
         // Where the budget ended the search, the time is one at which they meet, not the first one.
         claims.push(clear(time, 0.0));
     }
-    if upper == 0.0 {
+    if is_held {
+        claims.push(Claim::Held { time });
+    } else if upper == 0.0 {
         // What they meet at later is not at this time: there they are as near as at a time of contact.
         claims.push(Claim::Within {
             span: at(time),
@@ -240,7 +190,7 @@ pub fn clearance_claim(
 /// of them that is as long as the resolution is without one.
 ///
 /// # Errors
-/// As [`claim`].
+/// As [`claim`](super::claim).
 pub fn spans_claim(
     bodies: &[Moving<'_>; 2],
     window: Window,
@@ -262,21 +212,21 @@ pub fn spans_claim(
     };
     let mut claims = Vec::new();
     for (index, span) in answer.iter().enumerate() {
+        // At either end rounding may be the greater one.
+        let scales = [span.from, span.to].map(|time| Scale::new(bodies, window, options, time));
+        let is_tolerance = scales.iter().any(|scale| scale.accept(span.tolerance).is_ok());
+        if span.status != SpanStatus::Undecided && !is_tolerance {
+            return Err(Reason::Tolerance);
+        }
         match span.status {
             SpanStatus::Clear => {
                 let time = TimeSpan { from: span.from, to: span.to };
                 claims.push(Claim::Clear { span: time, distance: options.min_separation });
                 if answer.get(index + 1).is_some_and(|next| next.status == SpanStatus::Contact) {
-                    let most = Scale::new(bodies, window, options, span.to).most;
-                    claims.push(within(span.to, span.to, MOST_LEFT * most));
+                    claims.push(within(span.to, span.to, MOST_LEFT * scales[1].most));
                 }
             }
             SpanStatus::Contact => {
-                // At either end rounding may be the greater one.
-                let scales = [span.from, span.to].map(|time| Scale::new(bodies, window, options, time));
-                if scales.iter().all(|scale| scale.accept(span.tolerance).is_err()) {
-                    return Err(Reason::Tolerance);
-                }
                 // What is within the level was found with the engine's own roundings.
                 let above = span.tolerance.max(scales[0].asked) + scales[0].error.max(scales[1].error);
                 let near = |time: f64| within(time - resolution, time + resolution, above);

@@ -13,8 +13,10 @@
 //! | … contained | a body holds a part of the other at the start |
 //! | … with evidence | within s (`Crossing`) or s + δ (`Near`) at some time of the bracket |
 //! | [`Departure`] | within s + δ at the start and at `left.lo`, further apart at `left.hi`, and its answer from there on; until then (or the end of the window) within s + 13 δ at times no more than 1e-6 of the window apart |
+//! | … overlapping or touching at the start | as a `Contact` at the start is, of the triangles that the search finds there |
 //! | … contained at the start | a body holds a part of the other then |
 //! | … apart at the start | further apart than s then, where the answer begins |
+//! | any answer to [`Start::Leave`] | that it is the end of a departure: the bodies parted when a `Contact` says, else when the search finds them to |
 //! | [`Clearance`] | nowhere below `lower`, at most `upper` at `time`, and no wider than was asked for; bodies that meet are as near at `time` as at a time of contact |
 //! | [`ContactSpan`]s | clear spans are clear; spans of contact begin and end within the resolution of a time within s + δ, and hold one in each part as long as the resolution |
 //!
@@ -22,20 +24,24 @@
 //! paths of robots (`verify_path`, with the feature `robot`).
 //! Points, normals and features certify nothing; [`witness_fault`] compares them with the reported triangles. docs/theory/proofs.md.
 mod claims;
+mod leaving;
 #[cfg(feature = "robot")]
 mod path;
 mod rounding;
 mod witness;
 
-pub use claims::{claim, clearance_claim, departure_claim, spans_claim};
+pub use claims::{clearance_claim, spans_claim};
 pub use d2m_verify::*;
+pub use leaving::departure_claim;
 #[cfg(feature = "robot")]
 pub use path::{PairFault, PathVerdict, PathVerdictFault, verify_path};
 pub use witness::witness_fault;
 
 use crate::{Clearance, ClearanceOptions, ContactSpan, Departure};
-use crate::{Moving, QueryOptions, TimeOfContact, TriMesh, Window};
+use crate::{Moving, QueryOptions, Start, TimeOfContact, TriMesh, Window};
+use claims::contact_claim;
 use d2m_bvh as bvh;
+use leaving::leaving_claim;
 use std::sync::Arc;
 
 /// Steps of a proof, if nothing else is said: some seconds.
@@ -70,6 +76,25 @@ pub struct Verifier {
 /// [`MeshFault`]: a mesh without triangles.
 pub fn mesh(mesh: &TriMesh) -> Result<Mesh, MeshFault> {
     Mesh::try_new(mesh.vertices(), mesh.triangles())
+}
+
+/// What an answer of [`time_of_contact`](crate::time_of_contact) about these bodies claims. Where a contact at the start was to be let go
+/// ([`Start::Leave`]): what the [`departure`](crate::departure) claims that ends so.
+///
+/// # Errors
+/// The reason why nothing could prove it: [`Reason::Malformed`], [`Reason::Tolerance`], [`Reason::Witness`], [`Reason::Distance`],
+/// [`Reason::NothingClaimed`], [`Reason::NotLeft`].
+pub fn claim(
+    bodies: &[Moving<'_>; 2],
+    window: Window,
+    options: &QueryOptions,
+    answer: &TimeOfContact,
+) -> Result<Claim, Reason> {
+    if options.start == Start::Leave {
+        leaving_claim(bodies, window, options, answer)
+    } else {
+        contact_claim(bodies, window, options, answer, None)
+    }
 }
 
 impl Verifier {

@@ -1,7 +1,8 @@
 //! Answers about paths of robots.
 
+use super::leaving::{clear_until, departed};
 use super::{MeshFault, Verdict, Verifier};
-use crate::{Moving, QueryError, TimeOfContact, departure};
+use crate::{Moving, QueryError, TimeOfContact};
 use d2m_bvh::Start;
 use d2m_robot::{PathAnswer, PathBodies};
 
@@ -55,7 +56,7 @@ pub enum PairFault {
 }
 
 /// Proves an answer about a path again, pair by pair: the pair that meets as it was found, all others apart until then. Pairs whose start is
-/// [`Start::Leave`] are proven to leave by an answer of [`departure`] of their own, which is proven, too. The steps are for all pairs.
+/// [`Start::Leave`] are proven to leave by an answer of [`departure`](crate::departure) of their own, which is proven, too. The steps are for all pairs.
 ///
 /// ```
 /// use d2m::robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
@@ -127,17 +128,11 @@ impl<'a> PairOfPath<'a> {
         let [a, b] = self.moving.map(|body| body.body.mesh());
         let verifier = Verifier::try_new(a, b)?;
         let verdict = if options.start == Start::Leave {
-            let found = departure(self.moving[0], self.moving[1], window, &options)?;
-            let has_left = found.left.is_some_and(|left| left.hi <= self.until);
-            let is_met = matches!(self.claimed, TimeOfContact::Contact(_));
-            // What is claimed of those that have left, and of those that meet, need not be what this query found to the bit.
-            let answer = if has_left || is_met { self.claimed } else { found.answer };
-            let clear_until = clear_until(&answer, window.end());
+            let claimed = departed(&self.moving, window, &options, &self.claimed)?;
+            let clear_until = clear_until(&claimed.answer, window);
             if clear_until < self.until {
                 return Ok(PathVerdict::MeetBefore { pair, clear_until });
             }
-            let mut claimed = found;
-            claimed.answer = answer;
             verifier.departure(&self.moving, window, &options, &claimed, most_steps)
         } else {
             verifier.time_of_contact(&self.moving, window, &options, &self.claimed, most_steps)
@@ -146,13 +141,5 @@ impl<'a> PairOfPath<'a> {
             Verdict::Verified { steps } => PathVerdict::Verified { steps },
             verdict => PathVerdict::Pair { pair, verdict },
         })
-    }
-}
-
-fn clear_until(answer: &TimeOfContact, end: f64) -> f64 {
-    match answer {
-        TimeOfContact::Separated => end,
-        TimeOfContact::Undecided { clear_until } => *clear_until,
-        TimeOfContact::Contact(contact) => contact.time_lo,
     }
 }

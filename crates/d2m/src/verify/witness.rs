@@ -38,14 +38,7 @@ pub fn witness_fault(
     if contact.start == StartState::Contained {
         return None;
     }
-    let ids = [0, 1].map(|k| meshes[k].triangles()[numbers[k] as usize]);
-    let of = |k: usize, vertices: &[u32]| vertices.iter().all(|v| ids[k].contains(v));
-    let is_theirs = match contact.feature {
-        FeaturePair::VertexFace { vertex, face } => of(0, &[vertex]) && face == numbers[1],
-        FeaturePair::FaceVertex { face, vertex } => face == numbers[0] && of(1, &[vertex]),
-        FeaturePair::EdgeEdge { edge_a, edge_b } => of(0, &edge_a) && of(1, &edge_b),
-    };
-    if !is_theirs {
+    if !are_features_of(bodies, numbers, contact.feature) {
         return Some("feature");
     }
     let off = contact.tolerance + Scale::new(bodies, window, options, contact.time_lo).world_error;
@@ -69,15 +62,9 @@ pub fn witness_fault(
         return None;
     }
     let between = (bodies[0].radius + bodies[1].radius) + contact.separation;
-    if is_off((contact.normal.length() - 1.0).abs(), UNITS) {
-        return Some("normal");
-    }
-    // Triangles that all but touch have no direction of closest points; of rounded bodies that overlap the depth is not stated.
-    let along = |k: usize| placed[k].map(|p| contact.normal.dot(p - placed[0][0]));
-    let [a, b] = [along(0), along(1)];
-    let gap = b.into_iter().fold(f64::INFINITY, f64::min) - a.into_iter().fold(f64::NEG_INFINITY, f64::max);
-    let is_known = contact.separation > 0.0 && between > 4.0 * off;
-    if is_known && gap < between - 4.0 * off {
+    // Of rounded bodies that overlap the depth is not stated.
+    let distance = if contact.separation > 0.0 { between } else { 0.0 };
+    if !is_normal(contact.normal, &placed, distance, 4.0 * off) {
         return Some("normal");
     }
     let velocity = |k: usize| states[k].1.velocity_of(points[k] - states[k].0.translation);
@@ -91,8 +78,51 @@ pub fn witness_fault(
     }
 }
 
-/// The same of a clearance: its points are on its triangles at its time, and as far apart as its upper end, up to `error`, and up to `above`
-/// where they are less than that.
+/// Are these features of these triangles?
+fn are_features_of(bodies: &[Moving<'_>; 2], numbers: [u32; 2], feature: FeaturePair) -> bool {
+    let of = |k: usize, vertices: &[u32]| {
+        let ids = bodies[k].body.mesh().triangles()[numbers[k] as usize];
+        vertices.iter().all(|vertex| ids.contains(vertex))
+    };
+    match feature {
+        FeaturePair::VertexFace { vertex, face } => of(0, &[vertex]) && face == numbers[1],
+        FeaturePair::FaceVertex { face, vertex } => face == numbers[0] && of(1, &[vertex]),
+        FeaturePair::EdgeEdge { edge_a, edge_b } => of(0, &edge_a) && of(1, &edge_b),
+    }
+}
+
+/// Does a unit normal separate two placed triangles that are so far apart by no less than that, up to `error`? Those that all but touch have
+/// no direction of closest points.
+fn is_normal(normal: DVec3, [a, b]: &[[DVec3; 3]; 2], distance: f64, error: f64) -> bool {
+    if is_off((normal.length() - 1.0).abs(), UNITS) {
+        return false;
+    }
+    let along = |p: &DVec3| normal.dot(*p - a[0]);
+    let nearest = b.iter().map(along).fold(f64::INFINITY, f64::min);
+    let furthest = a.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
+    !(distance > error && nearest - furthest < distance - error)
+}
+
+/// The triangles of a clearance at its time; none where there are none of these numbers.
+fn placed_triangles(bodies: &[Moving<'_>; 2], answer: &Clearance) -> Option<[[DVec3; 3]; 2]> {
+    let place = |k: usize, number: u32| {
+        let mesh = bodies[k].body.mesh();
+        let (pose, _) = bodies[k].motion.pose_and_twist(answer.time);
+        let is_there = (number as usize) < mesh.triangle_count();
+        is_there.then(|| mesh.corners(number as usize).map(|p| pose.transform_point(p)))
+    };
+    Some([place(0, answer.triangle_a)?, place(1, answer.triangle_b)?])
+}
+
+/// Are the triangles of a clearance within this distance of each other, with the bodies' radii, at its time?
+pub(super) fn are_near(bodies: &[Moving<'_>; 2], answer: &Clearance, distance: f64) -> bool {
+    placed_triangles(bodies, answer).is_some_and(|[a, b]| {
+        !is_off(triangle_distance(&a, &b).lower, bodies[0].radius + bodies[1].radius + distance)
+    })
+}
+
+/// The first field of a clearance that is not that of its triangles at its time: its points are on them, and as far apart as its upper
+/// end, up to `error`, and up to `above` where they are less than that; the normal, where it is known, separates them.
 pub(super) fn clearance_fault(
     bodies: &[Moving<'_>; 2],
     answer: &Clearance,
@@ -101,19 +131,31 @@ pub(super) fn clearance_fault(
 ) -> Option<&'static str> {
     let (numbers, points) = ([answer.triangle_a, answer.triangle_b], [answer.point_a, answer.point_b]);
     let inward = [answer.normal * -bodies[0].radius, answer.normal * bodies[1].radius];
-    for (k, names) in [["triangle_a", "point_a"], ["triangle_b", "point_b"]].into_iter().enumerate() {
-        let mesh = bodies[k].body.mesh();
-        if numbers[k] as usize >= mesh.triangle_count() {
-            return Some(names[0]);
-        }
-        let (pose, _) = bodies[k].motion.pose_and_twist(answer.time);
-        let placed = mesh.corners(numbers[k] as usize).map(|p| pose.transform_point(p));
-        let off = triangle_distance(&[points[k] + inward[k]; 3], &placed).lower;
+    let Some(placed) = placed_triangles(bodies, answer) else { return Some("triangles") };
+    if !are_features_of(bodies, numbers, answer.feature) {
+        return Some("feature");
+    }
+    for (k, name) in ["point_a", "point_b"].into_iter().enumerate() {
+        let off = triangle_distance(&[points[k] + inward[k]; 3], &placed[k]).lower;
         if is_off(off, error) {
-            return Some(names[1]);
+            return Some(name);
         }
     }
-    let between = points[0].distance(points[1]);
-    let is_attained = between <= answer.upper + 2.0 * error && answer.upper <= between + 2.0 * error + above;
-    if is_attained { None } else { Some("clearance") }
+    let radii = bodies[0].radius + bodies[1].radius;
+    // Of rounded bodies that meet the meshes are within the radii; of triangles that cross nothing more is said.
+    let does_cross = answer.upper == 0.0 && triangle_distance(&placed[0], &placed[1]).lower == 0.0;
+    let [between, most, least] = if answer.upper > 0.0 {
+        [points[0].distance(points[1]), answer.upper, answer.upper - above]
+    } else {
+        [(points[0] + inward[0]).distance(points[1] + inward[1]), radii + above, 0.0]
+    };
+    if !does_cross && (is_off(between, most + 2.0 * error) || is_off(least, between + 2.0 * error)) {
+        return Some("clearance");
+    }
+    let distance = if answer.upper > above { between + radii } else { 0.0 };
+    let is_known = answer.normal != DVec3::ZERO;
+    if is_known && !is_normal(answer.normal, &placed, distance, 4.0 * error) {
+        return Some("normal");
+    }
+    None
 }

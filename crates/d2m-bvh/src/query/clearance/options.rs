@@ -141,8 +141,8 @@ pub enum ClearanceStatus {
 pub struct Clearance {
     /// Proven: at every time of the window the distance is at least this.
     pub lower: f64,
-    /// Proven: at `time` the distance is at most this; `point_a` and `point_b` attain it, to rounding. Zero only where the bodies meet in
-    /// the window: they are proven to share a point, or they touch and nobody can say more, since placing them by their poses errs by as
+    /// Proven: at `time` the distance is at most this; `point_a` and `point_b` attain it, to rounding, unless the bodies overlap at the start:
+    /// then they are points of triangles that cross, or of a body that the other one holds. Zero only where the bodies meet in the window: they are proven to share a point, or they touch and nobody can say more, since placing them by their poses errs by as
     /// much as is between them: the two triangles are placed no further apart than the sum e of what placing them may be off by (some
     /// 1e-14 of the lengths that enter), so the distance is at most 2e. A time of contact is then the last number before it, with
     /// at most 3.3 `tolerance` left.

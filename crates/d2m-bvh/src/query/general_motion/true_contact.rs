@@ -1,6 +1,7 @@
 //! From a contact of fitted motions to one of the true ones.
 
 use super::Advance;
+use crate::query::at_start::of_pair;
 use crate::query::report::MOST_LEFT;
 use crate::query::true_poses::PlacedTriangles;
 use crate::{Contact, Evidence, Mode, StartState};
@@ -27,6 +28,38 @@ impl Advance<'_> {
         let closing_speed = (speed_a - speed_b).dot(contact.normal);
         let contact = self.with_start(Contact { evidence, point_a, point_b, closing_speed, ..contact });
         self.with_what_is_left(contact)
+    }
+
+    /// A time at which the triangles of a contact of fitted motions are certainly near each other. Where these motions are in contact at
+    /// the start of the window it is that or none: at any other time nobody would know how the bodies stood then.
+    pub(super) fn time_of_meeting(&self, contact: &Contact) -> Option<f64> {
+        let triangles = [contact.triangle_a, contact.triangle_b];
+        let meeting = self.meeting();
+        if self.with_start(*contact).start == StartState::Apart {
+            meeting.found_near(triangles, contact.time_lo)
+        } else {
+            meeting.are_near(triangles, self.now).then_some(self.now)
+        }
+    }
+
+    /// The contact of the same triangles at such a time.
+    pub(super) fn met_at(&self, time: f64, contact: &Contact, tolerance: f64) -> Contact {
+        let found = self.of_same_triangles(time, contact);
+        let start = match found.start {
+            StartState::Apart => StartState::Apart,
+            // Whether they overlap is judged afterwards.
+            _ => StartState::Touching,
+        };
+        Contact { evidence: Evidence::Near, start, tolerance, ..found }
+    }
+
+    /// The data of the triangles of a contact where the true motions have them at a time, which is all of its bracket.
+    pub(super) fn of_same_triangles(&self, time: f64, contact: &Contact) -> Contact {
+        let triangles = [contact.triangle_a, contact.triangle_b];
+        let near = PlacedTriangles::new(&self.bodies, triangles, time).distance();
+        let normal = (near.point_b - near.point_a).normalize_or(contact.normal);
+        let then = self.with_start(Contact { time_lo: time, time_hi: time, ..*contact });
+        of_pair(then, &self.bodies, triangles, normal)
     }
 
     /// Proof that the two triangles of a contact share a point at the end of its bracket.
