@@ -9,8 +9,9 @@ use glam::DVec3;
 /// The vertices below some boxes of a body.
 pub(super) struct Group<'a> {
     body: &'a SceneBody<'a>,
-    /// Which boxes were added.
-    seen: Vec<bool>,
+    /// The boxes that were added, and how many.
+    seen: Places,
+    count: usize,
     pub(super) vertices: Vertices,
 }
 
@@ -24,33 +25,31 @@ pub(super) struct Vertices {
 
 impl<'a> Group<'a> {
     pub(super) fn new(body: &'a SceneBody<'a>) -> Self {
-        let seen = vec![false; WIDTH * body.tree.nodes().len()];
-        let places = Places::none_of(body.tree.mesh().vertices().len());
-        Self { body, seen, vertices: Vertices { points: Vec::new(), places } }
+        let vertices = Vertices { points: Vec::new(), places: Places::none() };
+        Self { body, seen: Places::none(), count: 0, vertices }
     }
 
     /// `None`: too many, or the time is over.
     pub(super) fn add(&mut self, index: u32, most: usize, clock: &mut Meter) -> Option<()> {
         let Vertices { points, places } = &mut self.vertices;
-        let mut stack = vec![index as usize];
+        let mut stack = vec![index];
         while let Some(index) = stack.pop() {
-            if core::mem::replace(&mut self.seen[index], true) {
+            if !self.seen.insert_last(index, self.count + 1) {
                 continue;
             }
+            self.count += 1;
             clock.step().ok()?;
-            match self.body.tree.nodes()[index / WIDTH].below(index % WIDTH) {
+            match self.body.tree.nodes()[index as usize / WIDTH].below(index as usize % WIDTH) {
                 Below::Triangle(triangle) => {
                     for vertex in self.body.tree.mesh().triangles()[triangle as usize] {
-                        let vertex = vertex as usize;
-                        if places.get(vertex).is_none() {
-                            points.push(self.body.place(self.body.tree.mesh().vertices()[vertex]));
-                            places.set_last(vertex, points.len());
+                        if places.insert_last(vertex, points.len() + 1) {
+                            points.push(self.body.place(self.body.tree.mesh().vertices()[vertex as usize]));
                         }
                     }
                 }
                 Below::Node(node) => {
-                    let used = self.body.tree.nodes()[node as usize].used as usize;
-                    stack.extend((0..used.min(WIDTH)).map(|lane| node as usize * WIDTH + lane));
+                    let used = self.body.tree.nodes()[node as usize].used.min(WIDTH as u32);
+                    stack.extend((0..used).map(|lane| node * WIDTH as u32 + lane));
                 }
             }
             if points.len() > most {

@@ -17,9 +17,11 @@ mod moving;
 mod paths;
 mod places;
 mod reaches;
+mod sampled;
 #[cfg(test)]
 mod tests;
 
+use crate::pair::motion::frame::Frame;
 use crate::walk::effort::{
     CROWD, CROWD_CHECK, CROWD_CHECK_TESTS, CROWD_OF_BATCHES, MOST_HALVINGS, MOST_PLANES, WORK_A_PAIR,
 };
@@ -132,6 +134,16 @@ impl Crowd {
     }
 }
 
+/// The frame from which planes are sought for all that is left after a time: that of the contact, backwards, if one is known; and how long
+/// that is.
+fn rest_of_window<L: Lanes>(state: &State<'_>, known: f64) -> (Frame, f64) {
+    let frame = match state.found {
+        Some(_) => state.behind.reversed,
+        None => state.motion.frame::<L::Doubles>(known),
+    };
+    (frame, (state.limit_offset - known).next_up())
+}
+
 impl Search<'_> {
     /// Drops the pairs that are proven apart, of those that wait and of the batch, until the contact that is known, or
     /// until the end of the window, or raises all their keys. Searches for an earlier
@@ -166,12 +178,14 @@ impl Search<'_> {
             return;
         }
         let mut clock = Meter::until(self.limits.stop);
+        let before_planes = self.work();
+        if !self.planes_may_part::<L>(state, least, batch.items(), &mut clock) {
+            patience.rest_after(self, before_planes, Planes::PartNothing);
+            patience.examined_to = Some(state.limit);
+            return;
+        }
         let Some(crowd) = self.crowd(state, batch.items(), &mut clock) else { return };
-        let frame = match state.found {
-            Some(_) => state.behind.reversed,
-            None => state.motion.frame::<L::Doubles>(known),
-        };
-        let span = (state.limit_offset - known).next_up();
+        let (frame, span) = rest_of_window::<L>(state, known);
         let Some(moving) = Moving::new(self.scene, crowd.points(), &frame, span, &mut clock) else { return };
         let starts = [state.behind.direction, moving.between()].map(DVec3::normalize_or_zero);
         let mut tried = starts.to_vec();
@@ -337,12 +351,21 @@ impl Search<'_> {
     /// The vertices below all pairs that wait; none if they are too many for what the search has done so far, or the time is over.
     fn crowd(&self, state: &State<'_>, batch: &[Item], clock: &mut Meter) -> Option<Crowd> {
         let most = (VERTICES_A_TEST_DONE * self.work()) as usize;
+        let items = self.scratch.queue.items().chain(batch);
+        self.gathered(items.filter(|item| item.key < state.limit), most, clock)
+    }
+
+    /// The vertices below pairs of boxes; none if they are more than so many of one body, or the time is over.
+    fn gathered<'i>(
+        &self,
+        items: impl Iterator<Item = &'i Item>,
+        most: usize,
+        clock: &mut Meter,
+    ) -> Option<Crowd> {
         let mut bodies = [&self.scene.a, &self.scene.b].map(Group::new);
-        for item in self.scratch.queue.items().chain(batch) {
-            if item.key < state.limit {
-                for (body, &index) in bodies.iter_mut().zip(&item.boxes) {
-                    body.add(index, most, clock)?;
-                }
+        for item in items {
+            for (body, &index) in bodies.iter_mut().zip(&item.boxes) {
+                body.add(index, most, clock)?;
             }
         }
         let vertices = bodies.map(|body| body.vertices);

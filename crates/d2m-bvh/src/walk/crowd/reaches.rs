@@ -18,13 +18,12 @@ pub(super) struct Reaches<'a> {
 
 impl<'a> Reaches<'a> {
     pub(super) fn new(body: &'a SceneBody<'a>, places: &'a Places, of_points: Vec<[f64; 2]>) -> Self {
-        let known = Places::none_of(WIDTH * body.tree.nodes().len());
-        Self { body, places, of_points, known, of_boxes: Vec::new() }
+        Self { body, places, of_points, known: Places::none(), of_boxes: Vec::new() }
     }
 
     /// What [`Self::measure`] found.
     pub(super) fn of(&self, index: u32) -> Option<[f64; 2]> {
-        Some(self.of_boxes[self.known.get(index as usize)?])
+        Some(self.of_boxes[self.known.get(index)?])
     }
 
     /// Measures what is below a box, and below all of its boxes; none: the time is over, or of a vertex nothing is known.
@@ -38,7 +37,7 @@ impl<'a> Reaches<'a> {
             Below::Triangle(triangle) => {
                 let corners = self.body.tree.mesh().triangles()[triangle as usize];
                 corners.into_iter().try_fold([f64::NEG_INFINITY; 2], |so_far, vertex| {
-                    Some(most(so_far, self.of_points[self.places.get(vertex as usize)?]))
+                    Some(most(so_far, self.of_points[self.places.get(vertex)?]))
                 })?
             }
             Below::Node(node) => {
@@ -49,7 +48,7 @@ impl<'a> Reaches<'a> {
             }
         };
         self.of_boxes.push(reach);
-        self.known.set_last(index as usize, self.of_boxes.len());
+        self.known.insert_last(index, self.of_boxes.len());
         Some(reach)
     }
 }

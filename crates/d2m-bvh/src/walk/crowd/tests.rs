@@ -9,6 +9,7 @@ use crate::walk::state::SubWindow;
 use crate::{Budget, MeshTree, QueryOptions, TriMesh, Window};
 use d2m_lanes::{F64x4, Portable};
 use d2m_mesh::Stop;
+use d2m_mesh::node::{Below, WideNode};
 use d2m_motion::ConstantTwist;
 use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::DQuat;
@@ -161,8 +162,8 @@ fn preparations_end_with_the_time() {
     let over = || Meter::until(Stop::new(&Budget::UNLIMITED.with_wall_clock(Duration::ZERO)));
     assert!(Moving::new(&scene, points.each_ref(), &frame, 0.25, &mut over()).is_none());
     let moving = Moving::new(&scene, points.each_ref(), &frame, 0.25, &mut Meter::unlimited()).unwrap();
-    let mut places = Places::none_of(3000);
-    (0..3000).for_each(|vertex| places.set_last(vertex, vertex + 1));
+    let mut places = Places::none();
+    assert!((0..3000).all(|vertex| places.insert_last(vertex, vertex as usize + 1)));
     let mut reaches = Reaches::new(&scene.a, &places, moving.reaches(Side::A, DVec3::X));
     assert_eq!(reaches.measure(0, &mut over()), None);
     assert!(reaches.measure(0, &mut Meter::unlimited()).is_some());
@@ -219,4 +220,40 @@ fn a_crowd_that_no_plane_parts_costs_one_attempt() {
     let mut patience = Patience::new(0, 1);
     patience.rest_after(&search, 1000, Planes::PartNothing);
     assert_eq!(patience.rest_until, 2 * search.work());
+}
+
+/// Of two soups in one place some pairs show that no plane parts them; of two that are apart, or come together as a whole, they do not.
+#[test]
+fn some_pairs_show_whether_planes_part_a_crowd() {
+    let mut random = KnuthRandom(47);
+    let vertices: Vec<_> = (0..300).map(|_| random.vector()).collect();
+    let tree = MeshTree::new(Surface::soup(vertices).into_mesh(TriMesh::try_new));
+    let options = QueryOptions::default();
+    let leaves = |tree: &MeshTree| -> Vec<u32> {
+        let boxes = tree.nodes().iter().enumerate();
+        let leaf = |(k, node): (usize, &WideNode)| {
+            let lanes =
+                (0..node.used as usize).filter(|&lane| matches!(node.below(lane), Below::Triangle(_)));
+            lanes.map(|lane| (WIDTH * k + lane) as u32).collect::<Vec<_>>()
+        };
+        boxes.flat_map(leaf).collect()
+    };
+    for (x, speed, may_part) in [(0.0, 0.0, false), (0.5, 0.0, false), (4.0, 0.0, true), (2.5, -4.0, true)] {
+        let motion = ConstantTwist::REST.with_position(DVec3::X * x).with_linear_velocity(DVec3::X * speed);
+        let bodies = [moving(&tree, motion), moving(&tree, ConstantTwist::REST)];
+        let scene = MovingScene::try_new(bodies[0], bodies[1], Window::UNIT, &options).unwrap();
+        let mut scratch = Scratch::new();
+        let mut search = Search::new(&scene, &options, &mut scratch);
+        let state = search.begin_window(SubWindow { start: 0.0, end: 1.0 });
+        for a in leaves(&tree) {
+            for b in leaves(&tree) {
+                search.scratch.queue.push(Item { key: 0, boxes: [a, b], next: Item::TRIANGLES });
+            }
+        }
+        assert_eq!(search.scratch.queue.len(), 10_000);
+        let clock = &mut Meter::unlimited();
+        let may = search.planes_may_part::<Portable>(&state, 0, &[], clock);
+        assert_eq!(may, may_part, "{x} {speed}");
+        assert!(clock.spent() < 2000, "{}", clock.spent());
+    }
 }
