@@ -40,8 +40,13 @@ const REFUSED: f64 = 1_099_511_627_776.0;
 impl Travel {
     /// Does the body turn more than once? Often degrees were meant.
     pub(crate) fn turns_far(self) -> bool {
-        // The sum rounds; one whole turn is no surprise. Queries refuse the largest ones.
-        self.turn > TAU * (1.0 + 1e-9) && self.turn < REFUSED
+        // Queries refuse the largest ones.
+        self.turns_more_than_once() && self.turn < REFUSED
+    }
+
+    pub(crate) fn turns_more_than_once(self) -> bool {
+        // The sum rounds; one whole turn is no surprise.
+        self.turn > TAU * (1.0 + 1e-9)
     }
 }
 

@@ -4,6 +4,11 @@ mod shell;
 
 use serde_json::Value;
 use shell::{Folder, d2m, refused, stderr, stdout};
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
 
 const LIFT: &str = r#"<robot name="lift">
   <link name="rail"/>
@@ -94,6 +99,43 @@ fn a_part_leaves_its_table() {
     let turned = d2m(&["robot", &robot, "--path", &path("9", "90"), "--scene", &scene(leaving[0])]);
     assert!(stderr(&turned).contains("joint \"spin\" turns 14.32 times on the path"), "{}", stderr(&turned));
     assert!(!stderr(&turned).contains("joint \"up\" turns"), "{}", stderr(&turned));
+}
+
+/// A path of six hundred million turns takes days: why is said at once, not when the answer is there; also of turns that queries of two bodies refuse.
+#[test]
+fn joints_that_turn_far_are_named_before_the_search() {
+    let folder = Folder::new("contract-far");
+    let arm = r#"<robot name="arm"><link name="base"/>
+      <link name="hand"><collision><origin xyz="1 0 0"/><geometry><box size="1 0.1 0.1"/></geometry></collision></link>
+      <joint name="turn" type="continuous"><parent link="base"/><child link="hand"/><axis xyz="0 0 1"/></joint>
+      <link name="tip"><collision><origin xyz="0.5 0 0"/><geometry><box size="0.5 0.1 0.1"/></geometry></collision></link>
+      <joint name="bend" type="continuous"><parent link="hand"/><child link="tip"/><origin xyz="1.6 0 0"/><axis xyz="0 0 1"/></joint></robot>"#;
+    let post =
+        r#"{"bodies": [{"name": "post", "mesh": "shape:box?x=0.1&y=0.1&z=2", "pose": {"x": [2.9, 0, 0]}}]}"#;
+    let robot = folder.file("arm.urdf", arm);
+    let scene = folder.file("post.json", post);
+    for way in ["4e9", "1e13"] {
+        let path = r#"{"joint_names": ["turn", "bend"], "points": [{"positions": [0, 0.5], "time_from_start": 0},
+            {"positions": [WAY, 1], "time_from_start": 1}]}"#;
+        let path = folder.file("far.json", &path.replace("WAY", way));
+        let mut run = Command::new(env!("CARGO_BIN_EXE_d2m"))
+            .args(["robot", &robot, "--path", &path, "--scene", &scene])
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut errors = BufReader::new(run.stderr.take().unwrap());
+        let (said, heard) = mpsc::channel();
+        thread::spawn(move || {
+            let mut line = String::new();
+            errors.read_line(&mut line).unwrap();
+            said.send(line)
+        });
+        let line = heard.recv_timeout(Duration::from_secs(20));
+        run.kill().unwrap();
+        run.wait().unwrap();
+        assert!(line.as_ref().is_ok_and(|line| line.contains("joint \"turn\" turns ")), "{way}: {line:?}");
+    }
 }
 
 /// Motions of every JSON form, splines among them, wherever a motion is read.

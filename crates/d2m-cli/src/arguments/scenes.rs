@@ -131,7 +131,7 @@ pub(crate) struct RobotArguments {
     /// Page of HTML to write that shows the robot on its path and what is proven of it
     #[arg(long, value_name = "view.html")]
     pub(crate) view: Option<String>,
-    /// Most seconds of the search; what is not decided by then is "undecided"
+    /// Most seconds of the search; what is not decided by then is "undecided". The search takes time for each turn of a joint
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     pub(crate) time_limit: Option<String>,
     /// Threads [default: all of the machine]

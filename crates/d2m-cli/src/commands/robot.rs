@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     robot.link_motions(&path).map_err(|error| Failure::at(&place, error))?;
     let srdf = arguments.srdf.as_ref().map(Srdf::read).transpose();
     let srdf = srdf.map_err(|error| Failure::Input(error.to_string()))?;
-    // Said beside the answer: a fault is one line alone.
+    // Said once all is read: a fault is one line alone.
     let mut notes: Vec<String> = robot.remarks().to_vec();
     let is_link = |link: &str| robot.find_link(link).is_some();
     let unknown = srdf.iter().flat_map(|srdf| srdf.find_unknown_links(is_link));
@@ -71,6 +71,10 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     notes.extend(far_turns(&path, &scene).map(|text| format!("warning: {place}: {text}")));
     notes.extend(warnings.iter().map(|warning| format!("warning: {place}: {warning}")));
     let pool = threads(arguments.threads.map_or(0, usize::from))?;
+    // Before the search: joints that turn far may be why it takes long.
+    for text in &notes {
+        note(&format!("d2m: {text}"));
+    }
     let answer = pool.install(|| scene.check_path(&path)).map_err(fault)?;
     let clearance = if arguments.clearance && answer.is_free() {
         pool.install(|| scene.clearance(&path)).map_err(fault)?
@@ -82,9 +86,6 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     } else {
         None
     };
-    for text in &notes {
-        note(&format!("d2m: {text}"));
-    }
     if let Some(page) = page {
         let bodies = scene.bodies_along(&path).map_err(fault)?;
         page.write(&picture_of_path(&bodies, window, &answer).to_html())?;
@@ -134,7 +135,7 @@ fn far_turns<'p>(path: &'p Trajectory, scene: &'p RobotScene) -> impl Iterator<I
         let way: f64 = positions.clone().zip(positions.skip(1)).map(|(from, to)| (to - from).abs()).sum();
         let travel = Travel { way: 0.0, turn: way };
         let words = "times on the path; angles are radians";
-        travel.turns_far().then(|| format!("joint {name:?} turns {} {words}", digits(way / TAU)))
+        travel.turns_more_than_once().then(|| format!("joint {name:?} turns {} {words}", digits(way / TAU)))
     })
 }
 
