@@ -85,6 +85,11 @@ impl Robot {
                     let reason = "let go at the start, they meet again before".to_owned();
                     Verdict::unproven(names(pair), reason, clear_until)
                 }
+                PathVerdict::OtherBodies => {
+                    let reason = "the answer is about other bodies".to_owned();
+                    let pair = answer.contact().map_or(["", ""], |found| [&found.a, &found.b]);
+                    Verdict::unproven(pair, reason, path.times().map_or(0.0, |[start, _]| start))
+                }
                 PathVerdict::Verified { steps } => d2m::verify::Verdict::Verified { steps }.into(),
                 other => return Err(Fault::new(format!("{other:?}"))),
             })

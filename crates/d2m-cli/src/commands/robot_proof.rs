@@ -27,6 +27,7 @@ pub(super) fn prove(bodies: &PathBodies<'_>, answer: &PathAnswer) -> Result<Proo
             &format!("let go at the start, they meet again at t = {}", short(clear_until)),
         ),
         PathVerdict::Pair { pair, verdict } => unverified(names(pair), &why(&verdict)),
+        PathVerdict::OtherBodies => Proof::Unverified("the answer is about other bodies".to_owned()),
         other => Proof::Unverified(format!("{other:?}")),
     })
 }
@@ -52,7 +53,7 @@ fn unverified([a, b]: [&str; 2], why: &str) -> Proof {
 mod tests {
     use super::*;
     use d2m::bvh::{QueryOptions, Start};
-    use d2m_robot::{Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
+    use d2m_robot::{PathContact, Robot, RobotOptions, RobotScene, Trajectory, TrajectoryPoint};
     use std::sync::Arc;
 
     const SLIDE: &str = r#"<robot name="slide">
@@ -86,6 +87,25 @@ mod tests {
         for (scene, end, answer) in [(&wide, 0.39, &free), (&plain, 0.8, &free), (&plain, 0.81, &met)] {
             let Proof::Unverified(why) = proof(scene, end, answer) else { panic!("verified: {answer:?}") };
             assert!(why.contains("cart") && why.contains("stop"), "{why}");
+        }
+        // A contact of bodies that are not checked, by their numbers or by their names, was proven with all others.
+        let PathAnswer::Contact(found) = &met else { unreachable!("they meet") };
+        let edited = |edit: &dyn Fn(&mut PathContact)| {
+            let mut lie = found.clone();
+            edit(&mut lie);
+            proof(&plain, 0.8, &PathAnswer::Contact(lie))
+        };
+        assert!(matches!(edited(&|_| ()), Proof::Verified(_)));
+        let lies: [&dyn Fn(&mut PathContact); 4] = [
+            &|lie| lie.bodies = [0, 0],
+            &|lie| lie.bodies = [900, 901],
+            &|lie| lie.a = "rail".into(),
+            &|lie| std::mem::swap(&mut lie.a, &mut lie.b),
+        ];
+        for lie in lies {
+            assert!(
+                matches!(edited(lie), Proof::Unverified(why) if why == "the answer is about other bodies")
+            );
         }
     }
 

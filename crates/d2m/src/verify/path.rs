@@ -4,7 +4,7 @@ use super::leaving::{clear_until, departed};
 use super::{MeshFault, Verdict, Verifier};
 use crate::{Moving, QueryError, TimeOfContact};
 use d2m_bvh::Start;
-use d2m_robot::{PathAnswer, PathBodies};
+use d2m_robot::{PathAnswer, PathBodies, PathContact};
 
 /// What became of an answer about a path.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +30,8 @@ pub enum PathVerdict {
         /// The query's end of what is free.
         clear_until: f64,
     },
+    /// Its contact is one of bodies that are not checked, or that have other names.
+    OtherBodies,
 }
 
 /// A pair that cannot be proven anything about.
@@ -85,6 +87,9 @@ pub fn verify_path(
     answer: &PathAnswer,
     most_steps: u64,
 ) -> Result<PathVerdict, PathVerdictFault> {
+    if answer.contact().is_some_and(|found| !are_checked(bodies, found)) {
+        return Ok(PathVerdict::OtherBodies);
+    }
     let mut left = most_steps;
     for &pair in bodies.pairs() {
         let proof = PairOfPath::new(bodies, answer, pair);
@@ -94,6 +99,13 @@ pub fn verify_path(
         }
     }
     Ok(PathVerdict::Verified { steps: most_steps - left })
+}
+
+/// Is this a contact of two bodies that are checked, by their own names?
+fn are_checked(bodies: &PathBodies<'_>, found: &PathContact) -> bool {
+    let [a, b] = found.bodies;
+    bodies.pairs().iter().any(|&pair| pair == [a, b] || pair == [b, a])
+        && [bodies.name(a), bodies.name(b)] == [&found.a, &found.b]
 }
 
 /// One pair, and what the answer says of it.
