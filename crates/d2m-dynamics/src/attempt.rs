@@ -20,6 +20,8 @@ use std::borrow::Cow;
 const PRECISION: f64 = 1e-5;
 /// The part of that which is aimed at.
 const AIM: f64 = 1e-3;
+/// And of crowds, and of what lies beside bodies that sleep, a speed, of the gap in a unit of time: a tenth of that of quiet bodies.
+const STILL: f64 = 0.05;
 /// Of bodies that move, this part of their speed, too.
 const RELATIVE: f64 = 1.0 / 1024.0;
 /// Solutions with the spin of the flight's middle put right.
@@ -181,7 +183,8 @@ impl Problem<'_> {
         let targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
         let precision = PRECISION * options.gap / options.step;
         let slow = span.resting_speed.max(options.gap / options.step);
-        let accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM, slow, company: self.company };
+        let company = self.company;
+        let mut accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM, slow, company, still: None };
         let pushing: Vec<f64> = rows.iter().map(|row| row.pushing).collect();
         let spins: Vec<DVec3> = free.iter().map(|body| body.velocity.angular).collect();
         let velocities = |c: &ContactPoint| [c.a, c.b].map(|body| free[place(body)].velocity);
@@ -191,6 +194,10 @@ impl Problem<'_> {
             .for_flights(&contacts, &targets, span.remaining)
             .with_running(&running);
         system.warm_start(&contacts);
+        let rests_beside = states.iter().any(|state| state.asleep);
+        if rests_beside || accuracy.company == Company::Crowd && system.is_crowd() {
+            accuracy.still = Some(STILL * options.gap);
+        }
         let found = Found {
             contacts,
             targets,

@@ -49,7 +49,7 @@ pub(crate) struct Push {
 /// The islands of some contacts: bodies that impulses move connect, the others do not. In the order of their first contact.
 pub(crate) fn islands(bodies: &[RigidBody], contacts: Vec<ContactPoint>) -> Vec<Island> {
     let mut parent: Vec<usize> = (0..bodies.len()).collect();
-    let moves = |i: usize| bodies[i].is_dynamic() && !bodies[i].held;
+    let moves = |i: usize| moves(&bodies[i]);
     for c in contacts.iter().filter(|c| moves(c.a) && moves(c.b)) {
         join(&mut parent, c.a, c.b);
     }

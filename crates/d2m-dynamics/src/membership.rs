@@ -211,10 +211,7 @@ impl Simulation {
     /// What sleeps is simulated again.
     pub(crate) fn wake_place(&mut self, place: usize) {
         let body = &mut self.bodies[place];
-        if body.asleep {
-            body.asleep = false;
-            body.time = self.time;
-        }
+        body.wake(self.time);
         body.quiet = Quiet::default();
     }
 }

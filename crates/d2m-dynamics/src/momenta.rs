@@ -5,12 +5,18 @@ use glam::DVec3;
 
 /// A momentum and an angular momentum about the center of mass, world axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Momenta {
     pub(crate) linear: DVec3,
     pub(crate) angular: DVec3,
 }
 
 impl Momenta {
+    /// So many times as much.
+    pub(crate) fn times(self, factor: f64) -> Self {
+        Self { linear: self.linear * factor, angular: self.angular * factor }
+    }
+
     /// Of an impulse that acts at `arm` from the center of mass.
     pub(crate) fn of_impulse(impulse: DVec3, arm: DVec3) -> Self {
         Self { linear: impulse, angular: arm.cross(impulse) }

@@ -4,6 +4,7 @@ use crate::SimulationError;
 use crate::clearance::Clearance;
 use crate::contact::{ContactPoint, Material, tangents};
 use crate::held::{Held, Source};
+use crate::momenta::Momenta;
 use crate::numbers::{is_small, is_turn, is_unit, material_fault};
 use crate::pairs::{Attempts, Pair, distance_of};
 use crate::rigid_body::{RigidBody, Target};
@@ -24,6 +25,7 @@ pub(crate) struct PairState {
     normal: Option<DVec3>,
     apart: f64,
     axes: Attempts,
+    borne: [Momenta; 2],
     clearance: Option<ClearanceState>,
     contacts: Vec<ContactState>,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -65,6 +67,7 @@ impl PairState {
             normal: pair.normal,
             apart: pair.apart,
             axes: pair.axes,
+            borne: pair.borne,
             clearance: pair
                 .clearance
                 .map(|known| ClearanceState { places: known.poses.map(place), distance: known.distance }),
@@ -109,6 +112,7 @@ impl PairState {
             normal: self.normal,
             apart: self.apart,
             axes: self.axes,
+            borne: self.borne,
         })
     }
 
@@ -136,6 +140,10 @@ impl PairState {
         }
         if !self.axes.is_counted() {
             return Some(("attempts", format!("{:?}", self.axes)));
+        }
+        let borne = self.borne.iter().flat_map(|borne| [borne.linear, borne.angular]);
+        if let Some(borne) = borne.into_iter().find(|borne| !is_small(*borne)) {
+            return Some(("what bodies that sleep bear", borne.to_string()));
         }
         let place = self.clearance.iter().flat_map(|known| &known.places).find(|place| !is_place(place));
         if let Some(place) = place {

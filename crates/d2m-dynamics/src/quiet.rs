@@ -52,6 +52,16 @@ impl Quiet {
         self.time >= QUIET_TIME
     }
 
+    /// Has it moved in the last step, by more than what is quiet does?
+    pub(crate) fn has_moved(&self) -> bool {
+        self.time == 0.0
+    }
+
+    /// For less than long enough: what wakes because something else is done to it falls asleep again soon, unless it moves.
+    pub(crate) fn drowsy(self) -> Self {
+        Self { time: 0.75 * QUIET_TIME, ..self }
+    }
+
     /// After a step of this length.
     pub(crate) fn go_on(&mut self, surface: Surface, rest: Rest, step: f64, options: &SimulationOptions) {
         let way = QUIET_WAY * options.gap;

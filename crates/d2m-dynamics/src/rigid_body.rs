@@ -282,6 +282,15 @@ impl RigidBody {
         (self.is_dynamic() && !self.asleep) || (self.is_kinematic() && !self.is_parked())
     }
 
+    /// If it sleeps it is simulated again, from this time on.
+    pub(crate) fn wake(&mut self, time: f64) {
+        if self.asleep {
+            self.asleep = false;
+            self.time = time;
+            self.lead = None;
+        }
+    }
+
     /// How fast the surface runs, world axes.
     pub(crate) fn surface_velocity_at(&self, orientation: DQuat) -> DVec3 {
         orientation * self.surface_velocity

@@ -1,4 +1,5 @@
-//! Rest: islands whose surfaces have been slow for long enough do not move until something comes close.
+//! Rest: islands whose surfaces have been slow for long enough do not move until something comes close. Of a crowd parts of them rest: what
+//! touches only bodies that have been slow as well.
 
 use crate::Simulation;
 use crate::contact::{ContactPoint, NEAR};
@@ -10,6 +11,12 @@ use crate::velocity::Velocity;
 use glam::DVec3;
 
 impl Simulation {
+    /// Do bodies of a heap sleep while others of it move? Among many bodies something always does, and what it does to the others is solved
+    /// as if these were fixed, as long as it stays what it was.
+    pub(crate) fn sleeps_in_parts(&self) -> bool {
+        self.bodies.len() > CROWD && self.joints.is_empty()
+    }
+
     /// After a step of length `step`: counts how long each body has been slow, and puts islands to sleep that touch
     /// something, all of whose bodies have been slow long enough, and that touch nothing that moves.
     pub(crate) fn put_to_sleep(&mut self, step: f64) {
@@ -46,10 +53,13 @@ impl Simulation {
             };
             body.quiet.go_on(surface, rest, step, &self.options);
         }
+        if self.sleeps_in_parts() {
+            self.wake_beside_moved();
+        }
         if !self.bodies.iter().any(|body| body.quiet.is_long() && !body.asleep) {
             return;
         }
-        let mut parent: Vec<usize> = (0..self.bodies.len()).collect();
+        let mut together = Vec::new();
         let mut held_up = vec![false; self.bodies.len()];
         let mut restless: Vec<bool> = self
             .bodies
@@ -74,33 +84,86 @@ impl Simulation {
                 runs || (body.is_kinematic() && body.surface_speed() > 0.0)
             };
             if dynamic(a) && dynamic(b) {
-                join(&mut parent, a, b);
+                together.push((a, b));
             }
             held_up[a] |= is_held;
             held_up[b] |= is_held;
             restless[a] |= moving(b);
             restless[b] |= moving(a);
         }
-        let mut awake = vec![false; self.bodies.len()];
-        for (i, held_up) in held_up.iter().enumerate() {
-            if restless[i] || !held_up {
-                awake[root(&mut parent, i)] = true;
+        for (restless, held_up) in restless.iter_mut().zip(&held_up) {
+            *restless |= !held_up;
+        }
+        let in_parts = self.sleeps_in_parts();
+        let awake = if in_parts { beside(&restless, &together) } else { connected(&restless, &together) };
+        let falls_asleep = |body: &RigidBody, i: usize| body.is_dynamic() && !body.asleep && !awake[i];
+        let fallen: Vec<bool> =
+            self.bodies.iter().enumerate().map(|(i, body)| falls_asleep(body, i)).collect();
+        for (&(a, b), pair) in &mut self.pairs {
+            for (k, i) in [a, b].into_iter().enumerate() {
+                if fallen[i] {
+                    pair.borne[k] = pair.exerted(k).times(1.0 / step);
+                }
             }
         }
-        for (i, body) in self.bodies.iter_mut().enumerate() {
-            let top = root(&mut parent, i);
-            if body.is_dynamic() && !body.asleep && held_up[i] && !awake[top] {
-                sleep(body);
-                self.recorder.change(body.id, body.flight);
-            }
+        for (body, _) in self.bodies.iter_mut().zip(fallen).filter(|(_, fallen)| *fallen) {
+            sleep(body, in_parts);
+            self.recorder.change(body.id, body.flight);
         }
     }
 }
 
+impl Simulation {
+    /// What sleeps wakes where something that it touches has moved.
+    fn wake_beside_moved(&mut self) {
+        let has_moved = |i: usize| {
+            let body = &self.bodies[i];
+            body.is_dynamic() && !body.asleep && body.quiet.has_moved()
+        };
+        let mut woken = Vec::new();
+        for (&(a, b), pair) in &self.pairs {
+            if pair.contacts.is_empty() {
+                continue;
+            }
+            for (i, other) in [(a, b), (b, a)] {
+                if self.bodies[i].asleep && has_moved(other) {
+                    woken.push(i);
+                }
+            }
+        }
+        for i in woken {
+            self.bodies[i].wake(self.time);
+        }
+    }
+}
+
+/// What is restless, and what touches it.
+fn beside(restless: &[bool], together: &[(usize, usize)]) -> Vec<bool> {
+    let mut awake = restless.to_vec();
+    for &(a, b) in together {
+        awake[a] |= restless[b];
+        awake[b] |= restless[a];
+    }
+    awake
+}
+
+/// All that is connected with something restless.
+fn connected(restless: &[bool], together: &[(usize, usize)]) -> Vec<bool> {
+    let mut parent: Vec<usize> = (0..restless.len()).collect();
+    for &(a, b) in together {
+        join(&mut parent, a, b);
+    }
+    let mut awake = vec![false; restless.len()];
+    for (i, restless) in restless.iter().enumerate() {
+        awake[root(&mut parent, i)] |= restless;
+    }
+    (0..restless.len()).map(|i| awake[root(&mut parent, i)]).collect()
+}
+
 /// No momentum and no motion from now on.
-fn sleep(body: &mut RigidBody) {
+fn sleep(body: &mut RigidBody, in_parts: bool) {
     body.asleep = true;
-    body.quiet = Quiet::default();
+    body.quiet = if in_parts { body.quiet.drowsy() } else { Quiet::default() };
     // The energy of the momenta is lost, and so is as much of what contacts have added.
     body.gained = (body.gained - body.kinetic_energy()).max(0.0);
     (body.momentum, body.angular_momentum) = Default::default();

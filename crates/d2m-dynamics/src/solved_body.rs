@@ -5,9 +5,9 @@ use crate::rigid_body::RigidBody;
 use crate::velocity::Velocity;
 use glam::DMat3;
 
-/// May impulses move it?
+/// May impulses move it? What sleeps bears what rests on it, until it wakes.
 pub(crate) fn moves(state: &RigidBody) -> bool {
-    state.is_dynamic() && !state.held
+    state.is_dynamic() && !state.held && !state.asleep
 }
 
 pub(crate) fn body_at(state: &RigidBody, velocity: Velocity, inverse_inertia: DMat3) -> SolverBody {

@@ -275,7 +275,14 @@ impl Simulation {
         let mut system = System::new(bodies, &contacts, |body| body);
         system.solve(
             &targets,
-            Accuracy { precision, relative: 0.0, aim: 1.0, company: Company::Few, slow: f64::INFINITY },
+            Accuracy {
+                precision,
+                relative: 0.0,
+                aim: 1.0,
+                company: Company::Few,
+                slow: f64::INFINITY,
+                still: None,
+            },
             Start::Sticking,
         );
         for &i in &self.unchecked {

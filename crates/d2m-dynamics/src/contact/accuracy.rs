@@ -15,6 +15,8 @@ pub(crate) struct Accuracy {
     pub(crate) company: Company,
     /// What slides slower than this could as well stick.
     pub(crate) slow: f64,
+    /// What may be left of bodies of a crowd in any case.
+    pub(crate) still: Option<f64>,
 }
 
 /// What else there is besides the bodies of a system.
@@ -30,6 +32,11 @@ pub(crate) enum Company {
 }
 
 impl Accuracy {
+    /// May so much be left in any case?
+    pub(super) fn is_still(self, residual: f64) -> bool {
+        self.still.is_some_and(|still| residual <= still)
+    }
+
     pub(super) fn in_crowd(self) -> bool {
         self.company != Company::Few
     }

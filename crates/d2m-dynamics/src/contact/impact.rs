@@ -62,6 +62,7 @@ pub(crate) fn impact(
                 aim: 1.0,
                 company: Company::Few,
                 slow: f64::INFINITY,
+                still: None,
             };
             system.solve(&targets, accuracy, Start::Sticking);
             system.doubled_energy(inertia) - energy

@@ -247,8 +247,14 @@ mod tests {
     fn rows_get_harder_under_tall_columns() {
         let (count, speed) = (100, 0.01);
         let mut system = column(count, speed);
-        let accuracy =
-            Accuracy { precision: 1e-9, relative: 0.0, aim: 1.0, company: Company::Few, slow: 1.0 };
+        let accuracy = Accuracy {
+            precision: 1e-9,
+            relative: 0.0,
+            aim: 1.0,
+            company: Company::Few,
+            slow: 1.0,
+            still: None,
+        };
         let residual = system.solve_direct(&vec![0.0; count], accuracy, Start::Sticking, Effort::FULL);
         assert!(residual < 1e-9, "{residual}");
     }
@@ -265,8 +271,14 @@ mod tests {
         let mut contact = ContactPoint { arm_a: DVec3::ZERO, arm_b: DVec3::ZERO, ..upright([0, 1]) };
         contact.material = Material { friction: 0.3, restitution: 0.0 };
         let mut system = System::new(bodies, &[contact], |i| i);
-        let accuracy =
-            Accuracy { precision: 1e-9, relative: 0.0, aim: 1.0, company: Company::Few, slow: 1.0 };
+        let accuracy = Accuracy {
+            precision: 1e-9,
+            relative: 0.0,
+            aim: 1.0,
+            company: Company::Few,
+            slow: 1.0,
+            still: None,
+        };
         let residual = system.solve_direct(&[0.0], accuracy, Start::Sticking, Effort::FULL);
         assert!(residual < 1e-9, "{residual}");
         let off = system.bodies[1].velocity.linear - DVec3::X * 2.7;

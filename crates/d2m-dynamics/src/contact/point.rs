@@ -151,6 +151,11 @@ impl ContactPoint {
         }
     }
 
+    /// What the impulse adds to the momenta of the first body, or of the second one.
+    pub(crate) fn exerted(&self, on: usize) -> Momenta {
+        if on == 0 { -self.momenta(self.arm_a) } else { self.momenta(self.arm_b) }
+    }
+
     /// The impulse on b.
     pub(crate) fn total(&self) -> DVec3 {
         self.normal * self.impulse + self.tangents[0] * self.sliding[0] + self.tangents[1] * self.sliding[1]

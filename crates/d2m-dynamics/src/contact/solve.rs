@@ -54,6 +54,9 @@ impl System {
             return residual;
         }
         let (moved, mut residual) = (self.moved(), self.residual(targets));
+        if accuracy.is_still(residual) {
+            return residual;
+        }
         let mut start = start;
         if self.mass_ratio() <= MOST_RATIO && !self.has_joints {
             if self.is_crowd() {
@@ -64,11 +67,14 @@ impl System {
                 && !could_stick
                 && !self.is_crowd()
                 && !self.is_long()
-                && !self.is_calm(accuracy);
+                && (!self.is_calm(accuracy) || accuracy.still.is_some());
             if is_swept {
                 residual = self.better(residual, 0.0, |system| {
                     system.sweep_until(targets, accuracy, Pace::Conjugate, FIRST)
                 });
+            }
+            if accuracy.is_still(residual) {
+                return residual;
             }
             let rests = moved <= SOME && self.is_calm(accuracy);
             if moved > COUPLE && !rests && !could_stick && !self.is_long() {
@@ -112,13 +118,14 @@ impl System {
     /// precision, as far as rounds gain much.
     pub(super) fn aim(&self, accuracy: Accuracy) -> f64 {
         let tolerance = self.tolerance(accuracy);
-        if tolerance <= accuracy.precision {
+        let aim = if tolerance <= accuracy.precision {
             accuracy.aim * accuracy.precision
         } else if self.moved() == 1 && !accuracy.in_crowd() {
             accuracy.precision
         } else {
             tolerance
-        }
+        };
+        accuracy.still.map_or(aim, |still| aim.max(still))
     }
 
     /// What need not be solved any better.
@@ -126,13 +133,14 @@ impl System {
         let tolerance = self.tolerance(accuracy);
         let moved = self.moved();
         let is_exact = self.has_joints || moved <= SOME && self.is_calm(accuracy);
-        if is_exact || moved <= COUPLE && !accuracy.in_crowd() {
+        let enough = if is_exact || moved <= COUPLE && !accuracy.in_crowd() {
             self.aim(accuracy)
         } else if self.is_long() || moved <= FEW && !accuracy.in_crowd() {
             SEVERAL * tolerance
         } else {
             CROWDED * tolerance
-        }
+        };
+        accuracy.still.map_or(enough, |still| enough.max(still))
     }
 
     /// What solutions of bodies that move may leave.
@@ -264,7 +272,7 @@ mod tests {
         };
         let accuracy = |slow: f64| {
             let (precision, relative) = (1e-9, 1.0 / 1024.0);
-            Accuracy { precision, relative, aim: 1.0, company: Company::Crowd, slow }
+            Accuracy { precision, relative, aim: 1.0, company: Company::Crowd, slow, still: None }
         };
         let targets = vec![0.0; count];
         let left = crossing().sweep_until(&targets, accuracy(0.0), Pace::Conjugate, FIRST);
@@ -280,7 +288,8 @@ mod tests {
             let mut column = System { is_row, ..column(count, 10.0) };
             column.bodies.iter_mut().for_each(|body| body.velocity.linear.x = 1e4);
             let (precision, relative, slow) = (1e-9, 1.0 / 1024.0, f64::INFINITY);
-            let accuracy = Accuracy { precision, relative, aim: 1.0, company: Company::Crowd, slow };
+            let accuracy =
+                Accuracy { precision, relative, aim: 1.0, company: Company::Crowd, slow, still: None };
             column.solve(&vec![0.0; count], accuracy, Start::Present)
         };
         let (row, crowd) = (left(true), left(false));
@@ -300,7 +309,14 @@ mod tests {
             |pair| ContactPoint { material: Material { friction: 0.5, restitution: 0.0 }, ..upright(pair) };
         let system = System::new(bodies, &[rough([0, 1]), rough([1, 2])], |i| i);
         let among = |company: Company| {
-            system.could_stick(Accuracy { precision: 1e-7, relative: 0.0, aim: 1.0, company, slow: 1.0 })
+            system.could_stick(Accuracy {
+                precision: 1e-7,
+                relative: 0.0,
+                aim: 1.0,
+                company,
+                slow: 1.0,
+                still: None,
+            })
         };
         assert!(among(Company::Few) && !among(Company::Crowd) && !among(Company::Heap));
     }
@@ -322,7 +338,14 @@ mod tests {
         let mut system = System::new(bodies, &contacts, |i| i);
         system.impulses.fill([1e-9, 0.0, 0.0]);
         let among = |company: Company, slow: f64| {
-            system.could_stick(Accuracy { precision: 1e-7, relative: 0.0, aim: 1.0, company, slow })
+            system.could_stick(Accuracy {
+                precision: 1e-7,
+                relative: 0.0,
+                aim: 1.0,
+                company,
+                slow,
+                still: None,
+            })
         };
         assert!(among(Company::Few, 2.0) && !among(Company::Few, 0.5));
         assert!(among(Company::Crowd, 8.0) && !among(Company::Crowd, 2.0) && !among(Company::Heap, 8.0));

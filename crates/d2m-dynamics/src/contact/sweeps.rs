@@ -62,8 +62,14 @@ pub(super) mod tests {
     use crate::velocity::Velocity;
     use glam::{DMat3, DVec3};
 
-    const ACCURACY: Accuracy =
-        Accuracy { precision: 1e-7, relative: 1.0 / 1024.0, aim: 1e-3, company: Company::Crowd, slow: 1.0 };
+    const ACCURACY: Accuracy = Accuracy {
+        precision: 1e-7,
+        relative: 1.0 / 1024.0,
+        aim: 1e-3,
+        company: Company::Crowd,
+        slow: 1.0,
+        still: None,
+    };
 
     /// So many bodies of mass one on each other, the lowest one on the ground, which is the last body; all fall at one speed.
     pub(in crate::contact) fn column(count: usize, speed: f64) -> System {

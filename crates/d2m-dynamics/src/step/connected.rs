@@ -7,11 +7,21 @@ use crate::joint_rows::Ahead;
 use crate::measured::{AROUND, Measured, measure};
 use crate::pairs::Pair;
 use crate::rigid_body::RigidBody;
+use crate::solved_body::moves;
 use d2m_bvh::QueryError;
 use d2m_mesh::parallel::map_owned;
 
 /// And those within this many times the way that two bodies come closer in what is left of the step.
 const APPROACH: f64 = 2.0;
+
+/// What bodies that sleep do when something that they touch is solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Sleepers {
+    /// They bear it, unless what touches them follows a motion.
+    Bear,
+    #[default]
+    Wake,
+}
 
 /// Bodies whose flights begin anew, and what they may touch.
 #[derive(Debug, Default)]
@@ -28,11 +38,19 @@ pub(super) struct Group {
     is_measured: Vec<bool>,
     /// Joints whose rows are among the contacts, ascending.
     joints: Vec<usize>,
+    pub(super) sleepers: Sleepers,
 }
 
 impl Group {
-    pub(super) fn new(bodies: usize) -> Self {
-        Self { is_member: vec![false; bodies], is_measured: vec![false; bodies], ..Self::default() }
+    pub(super) fn new(bodies: usize, sleepers: Sleepers) -> Self {
+        let (is_member, is_measured) = (vec![false; bodies], vec![false; bodies]);
+        Self { is_member, is_measured, sleepers, ..Self::default() }
+    }
+
+    /// Could this body be a member whose velocity is solved? What sleeps could be where it wakes.
+    pub(super) fn may_move(&self, body: &RigidBody) -> bool {
+        let bears = body.asleep && self.sleepers == Sleepers::Bear;
+        body.is_dynamic() && !body.held && !bears
     }
 
     pub(super) fn sort(&mut self) {
@@ -67,9 +85,8 @@ impl Step<'_> {
     /// instant, and has the solution begin with a part of them; the bodies that had some.
     pub(super) fn retract(&mut self, group: &mut Group, part: f64) -> Vec<usize> {
         let bodies = &mut self.sim.bodies;
-        let moves = |body: &RigidBody| body.is_dynamic() && !body.held;
         let is_inner = |c: &ContactPoint| {
-            [c.a, c.b].into_iter().all(|i| group.is_member[i] || !moves(&bodies[i]))
+            [c.a, c.b].into_iter().all(|i| group.is_member[i] || !group.may_move(&bodies[i]))
                 && (group.is_member[c.a] || group.is_member[c.b])
         };
         let (inner, outer): (Vec<_>, Vec<_>) = self.undoable.drain(..).partition(is_inner);
@@ -136,13 +153,11 @@ impl Step<'_> {
             if core::mem::replace(&mut group.is_member[i], true) {
                 continue;
             }
-            let body = &mut self.sim.bodies[i];
-            if body.is_dynamic() {
-                if body.asleep {
-                    body.asleep = false;
-                    body.time = time;
-                    body.lead = None;
+            if self.sim.bodies[i].is_dynamic() {
+                if self.sim.bodies[i].asleep {
+                    self.wake(i, time, occasion);
                 }
+                let body = &mut self.sim.bodies[i];
                 let begins = body.time == time;
                 body.advance(time, gravity);
                 // What is left of a flight to the end of the step goes on as it was planned, if that is near enough to what
@@ -219,6 +234,15 @@ impl Step<'_> {
                     return Err(a.query_error(b, error).into());
                 }
             };
+            // The step begins with the impulses of the last one; what is solved again begins with those taken back, what has just woken with
+            // those that it had.
+            let part = match occasion {
+                Occasion::Start => 1.0,
+                _ if self.has_woken(key.0, time) || self.has_woken(key.1, time) => {
+                    (self.end - time) / self.sim.options.step
+                }
+                _ => 0.0,
+            };
             let gap = self.sim.options.gap;
             let pair = self.sim.pairs.entry(key).or_insert_with(|| Box::new(Pair::new(gap)));
             if let Some(measured) = answer {
@@ -228,8 +252,6 @@ impl Step<'_> {
             if pair.contacts.is_empty() && expected.is_none() {
                 continue;
             }
-            // The step begins with the impulses of the last one; what is solved again begins with those taken back.
-            let part = if occasion == Occasion::Start { 1.0 } else { 0.0 };
             group.contacts.extend(expected.into_iter().flatten());
             group.contacts.extend(pair.contacts.iter().map(|point| {
                 let mut point = *point;
@@ -237,9 +259,11 @@ impl Step<'_> {
                 point.sliding = point.sliding.map(|x| x * part);
                 point
             }));
-            for i in [key.0, key.1] {
+            for (i, other) in [key, (key.1, key.0)] {
                 let body = &self.sim.bodies[i];
-                if !group.is_member[i] && body.is_dynamic() && !body.held {
+                // What follows a motion presses on others without regard.
+                let is_driven = || self.sim.bodies[other].is_kinematic() && body.is_dynamic() && !body.held;
+                if !group.is_member[i] && (group.may_move(body) || is_driven()) {
                     next.push(i);
                 }
             }

@@ -8,6 +8,7 @@ mod hold;
 mod plan;
 mod resolve;
 mod sense;
+mod sleepers;
 
 use crate::contact::{ContactPoint, HIT};
 use crate::rigid_body::RigidBody;
@@ -72,6 +73,10 @@ pub(crate) struct Step<'s> {
     pressed: BTreeSet<Key>,
     /// Until when sensors have looked.
     sensed: f64,
+    /// When each body that slept was woken in this step.
+    woken: Vec<Option<f64>>,
+    /// What sleeps and is to wake when the step ends.
+    disturbed: BTreeSet<usize>,
 }
 
 type Key = (usize, usize);
@@ -82,6 +87,7 @@ impl<'s> Step<'s> {
         let slow = options.resting_speed().max(options.gap / options.step);
         let margin = options.gap + slow * options.step;
         let start = sim.time;
+        let woken = vec![None; sim.bodies.len()];
         Self {
             sim,
             listener,
@@ -98,6 +104,8 @@ impl<'s> Step<'s> {
             undoable: Vec::new(),
             pressed: BTreeSet::new(),
             sensed: start,
+            woken,
+            disturbed: BTreeSet::new(),
         }
     }
 
@@ -257,6 +265,9 @@ impl<'s> Step<'s> {
         self.sim.greatest_energy = self.sim.greatest_energy.max(energy);
         self.sim.time = time;
         self.sim.put_to_sleep(length);
+        for i in core::mem::take(&mut self.disturbed) {
+            self.sim.bodies[i].wake(time);
+        }
     }
 }
 

@@ -1,12 +1,13 @@
 //! Velocities of the flights that begin at an event.
 
-use super::connected::Group;
+use super::connected::{Group, Sleepers};
 use super::{FEW_ITEMS, Occasion, Step};
 use crate::contact::{Company, ContactPoint};
 use crate::flight::Splits;
 use crate::flight_length::Clock;
 use crate::group::{CROWD, Solved, islands, solve};
 use crate::rigid_body::RigidBody;
+use crate::solved_body::moves;
 use crate::velocity::Velocity;
 use crate::{ContactImpulse, StepError};
 use d2m_mesh::parallel::map_owned;
@@ -15,6 +16,8 @@ use std::collections::BTreeMap;
 
 /// Rounds of bodies that others press on, after which all that contacts connect with them are solved together.
 const MOST_ROUNDS: u32 = 4;
+/// Rounds in which what sleeps wakes by hits, after which all of it does that contacts connect.
+const MOST_HITS: u32 = 16;
 /// A solution that leads no point of a body's surface further off than this part of the gap in a step leaves its flight as it is:
 /// a sixty-fourth of [`LEEWAY`], so that all contacts of a body together stay within that.
 const SAME: f64 = 1.0 / 1024.0;
@@ -22,6 +25,15 @@ const SAME: f64 = 1.0 / 1024.0;
 const FEW: usize = 8;
 /// The part of the gap by which a contact may close in what is left of the step before its body is solved with the others.
 pub(super) const LEEWAY: f64 = 1.0 / 16.0;
+
+/// What is solved at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Scope {
+    /// Some bodies, and then those that they press on or let go.
+    Nearby,
+    /// All that contacts connect.
+    Connected,
+}
 
 impl Step<'_> {
     /// Solves the velocities of the seeds and of all that are in contact with them, and starts their flights.
@@ -31,7 +43,9 @@ impl Step<'_> {
         seeds: Vec<usize>,
         occasion: Occasion,
     ) -> Result<(), StepError> {
-        let mut group = Group::new(self.sim.bodies.len());
+        let sleepers = if self.sim.sleeps_in_parts() { Sleepers::Bear } else { Sleepers::Wake };
+        let mut group = Group::new(self.sim.bodies.len(), sleepers);
+        let seeds = self.awake_or_driven(seeds, sleepers);
         let until = if let Occasion::Plan { until } = occasion { until } else { self.end };
         let clock = Clock { now: time, end: until };
         let renewed = if occasion.is_event() { seeds.clone() } else { Vec::new() };
@@ -40,17 +54,8 @@ impl Step<'_> {
             Occasion::Expected => self.sim.bodies.len() > CROWD && seeds.len() <= FEW,
             _ => false,
         };
-        let solved = if is_local && self.sim.joints.is_empty() {
-            self.solve_nearby(&mut group, seeds, clock, occasion)?
-        } else {
-            self.admit_connected(&mut group, time, seeds, occasion)?;
-            group.sort();
-            if matches!(occasion, Occasion::Expected | Occasion::Plan { .. }) {
-                self.retract(&mut group, (until - time) / (self.end - time));
-            }
-            self.follow_motions(&group, clock, occasion)?;
-            self.solve_islands(&mut group, clock, Vec::new(), &[], occasion)
-        };
+        let scope = if is_local && self.sim.joints.is_empty() { Scope::Nearby } else { Scope::Connected };
+        let solved = self.solve_in_rounds(&mut group, seeds, clock, occasion, scope)?;
         if !matches!(occasion, Occasion::Plan { .. } | Occasion::Expected) {
             self.impulses.append(&mut self.undoable);
         }
@@ -92,7 +97,7 @@ impl Step<'_> {
         let splits = if self.sim.bodies.len() > CROWD { Splits::Common } else { Splits::Own };
         for &i in &group.members {
             let body = &mut self.sim.bodies[i];
-            if body.is_dynamic() && !body.held && !solved_for[i] {
+            if moves(body) && !solved_for[i] {
                 let horizon = body.horizon_within(until, step, splits);
                 let length = horizon - time;
                 let velocity = body.flight_velocity(length, gravity);
@@ -150,7 +155,7 @@ impl Step<'_> {
         for part in &before {
             group.warm(&part.rests, 1.0);
         }
-        let settled = |i: usize| group.is_member[i] || !bodies[i].is_dynamic() || bodies[i].held;
+        let settled = |i: usize| group.is_member[i] || !group.may_move(&bodies[i]);
         let mut within = Vec::with_capacity(group.contacts.len());
         within.extend(group.contacts.iter().filter(|c| settled(c.a) && settled(c.b)));
         let mut known: BTreeMap<usize, Solved> = BTreeMap::new();
@@ -162,7 +167,7 @@ impl Step<'_> {
         let islands = islands(bodies, within).into_iter().map(|island| {
             let ends = || island.contacts.iter().flat_map(|c| [c.a, c.b]);
             let is_new = ends().any(|i| renewed.binary_search(&i).is_ok());
-            let first = ends().filter(|&i| bodies[i].is_dynamic() && !bodies[i].held).min();
+            let first = ends().filter(|&i| moves(&bodies[i])).min();
             let part = first.filter(|_| !is_new).and_then(|first| known.remove(&first));
             (island, part)
         });
@@ -173,33 +178,50 @@ impl Step<'_> {
     }
 
     /// An event changes the velocities of its bodies, and of those that they then press on or let go: a heap of bodies at rest is
-    /// not solved again for what happens on top of it. The same holds for contacts that are expected in a crowd.
-    fn solve_nearby(
+    /// not solved again for what happens on top of it. The same holds for contacts that are expected in a crowd. Of a crowd what sleeps
+    /// is solved where what it bears changes.
+    fn solve_in_rounds(
         &mut self,
         group: &mut Group,
         seeds: Vec<usize>,
         clock: Clock,
         occasion: Occasion,
+        scope: Scope,
     ) -> Result<Vec<Solved>, StepError> {
-        let (mut ring, mut solved) = (seeds, Vec::new());
-        for _ in 0..MOST_ROUNDS {
-            self.admit(group, clock.now, &ring, occasion)?;
+        let (mut ring, mut solved, mut scope) = (seeds, Vec::new(), scope);
+        for round in 0.. {
+            if round == MOST_HITS {
+                group.sleepers = Sleepers::Wake;
+            }
+            let goes_far = round == MOST_ROUNDS && scope == Scope::Nearby || round == MOST_HITS;
+            if goes_far {
+                scope = Scope::Connected;
+            }
+            match scope {
+                Scope::Nearby => {
+                    self.admit(group, clock.now, &ring, occasion)?;
+                }
+                Scope::Connected => self.admit_connected(group, clock.now, ring.clone(), occasion)?,
+            }
+            if goes_far {
+                let rest = self.beyond(group);
+                self.admit_connected(group, clock.now, rest, occasion)?;
+                ring.clone_from(&group.members);
+            }
             solved = self.solve_admitted(group, clock, occasion, solved, ring)?;
-            ring = self.pressed(group, &solved, clock);
+            ring = self.pressed(group, &solved, clock, scope);
+            ring.extend(self.hit(group, &solved, clock, occasion));
             if ring.is_empty() {
-                return Ok(solved);
+                break;
             }
         }
-        self.admit_connected(group, clock.now, ring, occasion)?;
-        let rest: Vec<usize> = group.contacts.iter().flat_map(|c| [c.a, c.b]).collect();
-        let outside = |i: &usize| {
-            let body = &self.sim.bodies[*i];
-            !group.is_member[*i] && body.is_dynamic() && !body.held
-        };
-        let rest: Vec<usize> = rest.into_iter().filter(outside).collect();
-        self.admit_connected(group, clock.now, rest, occasion)?;
-        let all = group.members.clone();
-        self.solve_admitted(group, clock, occasion, solved, all)
+        Ok(solved)
+    }
+
+    /// What the group's contacts connect with it and is none of it yet.
+    fn beyond(&self, group: &Group) -> Vec<usize> {
+        let is_beyond = |i: &usize| !group.is_member[*i] && group.may_move(&self.sim.bodies[*i]);
+        group.contacts.iter().flat_map(|c| [c.a, c.b]).filter(is_beyond).collect()
     }
 
     /// Solves for the members after these have been admitted.
@@ -213,8 +235,8 @@ impl Step<'_> {
     ) -> Result<Vec<Solved>, StepError> {
         group.sort();
         let mut renewed = admitted;
-        if occasion == Occasion::Expected {
-            renewed.extend(self.retract(group, 1.0));
+        if matches!(occasion, Occasion::Expected | Occasion::Plan { .. }) {
+            renewed.extend(self.retract(group, (clock.end - clock.now) / (self.end - clock.now)));
         }
         renewed.sort_unstable();
         self.follow_motions(group, clock, occasion)?;
@@ -223,7 +245,10 @@ impl Step<'_> {
 
     /// The bodies outside of the group that members with these velocities come closer to than contacts allow, or that they were pressed
     /// by and leave, ascending.
-    fn pressed(&self, group: &Group, solved: &[Solved], clock: Clock) -> Vec<usize> {
+    fn pressed(&self, group: &Group, solved: &[Solved], clock: Clock, scope: Scope) -> Vec<usize> {
+        if scope == Scope::Connected {
+            return Vec::new();
+        }
         let gravity = self.sim.options.gravity;
         let mut velocities = BTreeMap::new();
         for push in solved.iter().flat_map(|part| &part.bodies) {
@@ -233,16 +258,13 @@ impl Step<'_> {
             let body = &self.sim.bodies[i];
             match velocities.get(&i) {
                 Some(velocity) => *velocity,
-                None if group.is_member[i] && body.is_dynamic() && !body.held => {
+                None if group.is_member[i] && moves(body) => {
                     body.flight_velocity(clock.end - clock.now, gravity)
                 }
                 None => body.present_velocity(),
             }
         };
-        let outside = |i: usize| {
-            let body = &self.sim.bodies[i];
-            !group.is_member[i] && body.is_dynamic() && !body.held
-        };
+        let outside = |i: usize| !group.is_member[i] && group.may_move(&self.sim.bodies[i]);
         let length = clock.end - clock.now;
         let closes = |contact: &&ContactPoint| {
             let rate = contact.rate(velocity(contact.a), velocity(contact.b));

@@ -1,0 +1,143 @@
+//! Heaps of which parts sleep while others move: what sleeps bears what touches it, and wakes where that changes.
+
+mod ground;
+
+use d2m_bvh::MeshTree;
+use d2m_dynamics::{Body, BodyId, Kind, Mass, Simulation, SimulationOptions};
+use glam::DVec3;
+use ground::tree;
+use std::sync::Arc;
+
+const MANY: usize = 70;
+
+/// Of density one.
+fn body(name: &'static str, shape: &Arc<MeshTree>, friction: f64, position: DVec3) -> Body {
+    let body = Body::new(name, Arc::clone(shape)).with_mass(Mass::Density(1.0));
+    body.with_friction(friction).with_position(position)
+}
+
+fn simulation_on(friction: f64) -> Simulation {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let floor = Body::new("floor", tree("box?x=100&y=0.5&z=20"))
+        .with_kind(Kind::Static)
+        .with_friction(friction)
+        .with_position(DVec3::NEG_Y * 0.5);
+    simulation.add(&floor).unwrap();
+    simulation
+}
+
+/// A slab on the floor, and small boxes on it.
+fn laden_slab() -> (Simulation, BodyId, Vec<BodyId>) {
+    let mut simulation = simulation_on(0.5);
+    let slab = body("slab", &tree("box?x=10&y=0.1&z=10"), 0.5, DVec3::Y * 0.101);
+    let slab = simulation.add(&slab).unwrap();
+    let small = tree("box?x=0.25&y=0.25&z=0.25");
+    let place = |k: usize| DVec3::new(2.0 * (k / 9) as f64 - 8.0, 0.452, 2.0 * (k % 9) as f64 - 8.0);
+    let boxes = (0..MANY).map(|k| simulation.add(&body("box", &small, 0.5, place(k))).unwrap());
+    let boxes = boxes.collect();
+    (simulation, slab, boxes)
+}
+
+/// A step in which the first box is pushed to and fro, harder than friction holds it.
+fn push(simulation: &mut Simulation, boxes: &[BodyId], step: usize) {
+    let way = if step / 4 % 2 == 0 { 1.0 } else { -1.0 };
+    simulation.set_force(boxes[0], DVec3::X * (way * 8.0 * 0.125 * 9.81), DVec3::ZERO).unwrap();
+    simulation.step().unwrap();
+}
+
+fn asleep(simulation: &Simulation, of: &[BodyId]) -> usize {
+    of.iter().filter(|&&body| simulation.is_asleep(body)).count()
+}
+
+/// One box that moves keeps itself awake and the slab that it slides on, and none of the others on that.
+#[test]
+fn what_rests_sleeps_beside_what_moves() {
+    let (mut simulation, slab, boxes) = laden_slab();
+    for step in 0..150 {
+        push(&mut simulation, &boxes, step);
+    }
+    assert!(asleep(&simulation, &boxes) == MANY - 1, "{}", asleep(&simulation, &boxes));
+    assert!(!simulation.is_asleep(boxes[0]) && !simulation.is_asleep(slab));
+    // What sleeps is part of a snapshot with what it bears.
+    let snapshot = simulation.snapshot();
+    let run = |simulation: &mut Simulation| {
+        for step in 0..40 {
+            push(simulation, &boxes, step);
+        }
+        boxes.iter().map(|&body| simulation.position(body)).collect::<Vec<_>>()
+    };
+    let first = run(&mut simulation);
+    simulation.restore(&snapshot).unwrap();
+    assert_eq!(run(&mut simulation), first);
+}
+
+/// A push that lifts the slab lifts what sleeps on it in the same step, and with all of the momentum.
+#[test]
+fn what_is_hit_from_below_moves_at_once() {
+    let (mut simulation, slab, boxes) = laden_slab();
+    for step in 0..150 {
+        push(&mut simulation, &boxes, step);
+    }
+
+    let (mass, small) = (20.0 * 20.0 * 0.2, 0.125);
+    let all = mass + small * MANY as f64;
+    simulation.apply_impulse_at(slab, DVec3::Y * (2.0 * all), simulation.position(slab)).unwrap();
+    simulation.step().unwrap();
+    assert_eq!(asleep(&simulation, &boxes), 0);
+    let up = |body: BodyId| simulation.linear_velocity(body).y;
+    let momentum = mass * up(slab) + boxes.iter().map(|&body| small * up(body)).sum::<f64>();
+    // Less what gravity takes in a step.
+    let (most, taken) = (2.0 * all, all * 9.81 * simulation.options().step);
+    assert!(momentum < most && momentum > most - taken, "{momentum} of {most}, {taken}");
+}
+
+/// A row of boxes that sleep on a floor that is nearly ice is hit from one end: none of the momentum is lost but what friction takes.
+#[test]
+fn hits_on_what_sleeps_lose_no_momentum() {
+    let friction = 1e-4;
+    let mut simulation = simulation_on(friction);
+    let cube = tree("box?x=0.5&y=0.5&z=0.5");
+    let place = |k: usize| DVec3::new(1.001 * k as f64, 0.501, 0.0);
+    let row = (0..MANY).map(|k| simulation.add(&body("box", &cube, friction, place(k))).unwrap());
+    let row: Vec<BodyId> = row.collect();
+    while asleep(&simulation, &row) < MANY {
+        assert!(simulation.time() < 5.0);
+        simulation.step().unwrap();
+    }
+    let speed = 3.0;
+    let hits = body("hits", &cube, friction, DVec3::new(-1.02, 0.501, 0.0));
+    let hits = simulation.add(&hits.with_linear_velocity(DVec3::X * speed)).unwrap();
+    for step in 1..=10 {
+        simulation.step().unwrap();
+        let along = |body: BodyId| simulation.linear_velocity(body).x;
+        let momentum = along(hits) + row.iter().map(|&body| along(body)).sum::<f64>();
+        let taken = friction * 9.81 * (MANY + 1) as f64 * simulation.options().step * step as f64;
+        assert!(momentum < speed + 1e-9 && momentum > speed - 2.0 * taken, "{momentum} of {speed}, {taken}");
+    }
+    assert!(simulation.linear_velocity(hits).x < 0.5 * speed);
+}
+
+/// A table of which one leg is kicked away tips over, though it sleeps, as do its other legs.
+#[test]
+fn what_loses_its_support_tips_over() {
+    let mut simulation = simulation_on(0.5);
+    let leg = tree("box?x=0.15&y=0.5&z=0.15");
+    let legs = [DVec3::new(-2.0, 0.501, -1.0), DVec3::new(-2.0, 0.501, 1.0), DVec3::new(2.0, 0.501, 0.0)]
+        .map(|place| simulation.add(&body("leg", &leg, 0.5, place)).unwrap());
+    let top = body("top", &tree("box?x=2.5&y=0.1&z=1.5"), 0.5, DVec3::Y * 1.102);
+    let top = simulation.add(&top).unwrap();
+    let place = |k: usize| DVec3::new(k as f64 - 35.0, 0.501, 10.0);
+    let others = (0..MANY).map(|k| simulation.add(&body("other", &leg, 0.5, place(k))).unwrap());
+    let others: Vec<BodyId> = others.collect();
+    while !simulation.is_asleep(top) || asleep(&simulation, &others) < MANY {
+        assert!(simulation.time() < 5.0);
+        simulation.step().unwrap();
+    }
+    simulation.apply_impulse_at(legs[2], DVec3::X * 3.0, simulation.position(legs[2])).unwrap();
+    for _ in 0..200 {
+        simulation.step().unwrap();
+    }
+    let upright = (simulation.orientation(top) * DVec3::Y).y;
+    assert!(upright < 0.99 && simulation.position(top).y < 0.9, "{upright}");
+    assert_eq!(asleep(&simulation, &others), MANY);
+}
