@@ -10,11 +10,14 @@ use crate::union::{join, root};
 use crate::velocity::Velocity;
 use glam::DVec3;
 
+/// Bodies of a simulation from which on parts of heaps sleep while others move: of fewer a step in which all are solved costs little.
+const MANY: usize = 256;
+
 impl Simulation {
     /// Do bodies of a heap sleep while others of it move? Among many bodies something always does, and what it does to the others is solved
-    /// as if these were fixed, as long as it stays what it was.
+    /// as if these were fixed, as long as it stays about what it was.
     pub(crate) fn sleeps_in_parts(&self) -> bool {
-        self.bodies.len() > CROWD && self.joints.is_empty()
+        self.bodies.len() > MANY && self.joints.is_empty()
     }
 
     /// After a step of length `step`: counts how long each body has been slow, and puts islands to sleep that touch
