@@ -172,3 +172,34 @@ fn sleep(body: &mut RigidBody, in_parts: bool) {
     (body.momentum, body.angular_momentum) = Default::default();
     body.fly(Velocity::default(), f64::INFINITY);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::upright;
+    use crate::pairs::Pair;
+    use crate::{Body, SimulationOptions};
+    use d2m_bvh::MeshTree;
+    use std::sync::Arc;
+
+    /// What sleeps wakes where a body that it touches has moved, and stays where it has been quiet.
+    #[test]
+    fn what_sleeps_wakes_beside_what_has_moved() {
+        let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()));
+        for (was_quiet, wakes) in [(false, true), (true, false)] {
+            let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+            for k in 0..2 {
+                let position = DVec3::Y * (1.001 * f64::from(k));
+                simulation.add(&Body::new("cube", Arc::clone(&cube)).with_position(position)).unwrap();
+            }
+            sleep(&mut simulation.bodies[0], true);
+            if was_quiet {
+                simulation.bodies[1].quiet = Quiet::default().drowsy();
+            }
+            let touching = Pair { contacts: vec![upright([0, 1])], ..Pair::new(1e-3) };
+            simulation.pairs.insert((0, 1), Box::new(touching));
+            simulation.wake_beside_moved();
+            assert_eq!(simulation.bodies[0].asleep, !wakes);
+        }
+    }
+}
