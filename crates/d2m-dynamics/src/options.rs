@@ -28,7 +28,9 @@ pub struct SimulationOptions {
     /// Node tests of one pair query at most. A query that meets the limit ends the flight early, at a certified time. Default 2²².
     pub node_tests: u64,
     /// Islands that friction holds sleep once their surfaces are slower than a tenth of the gap a half second for that long and not faster than before;
-    /// among more than 64 bodies, once they have moved by less than a quarter of the gap in it. Default true.
+    /// among more than 64 bodies, once they have moved by less than a quarter of the gap in it. Among more than 256 bodies without joints each
+    /// body sleeps for itself, once it and all that it touches are so: what sleeps bears the others as a fixed body does, and wakes where one of
+    /// them moves or presses on it otherwise. Default true.
     pub sleeping: bool,
 }
 
