@@ -26,7 +26,8 @@ pub(super) enum Expectation {
     Turned,
     /// All sleep at the end.
     Asleep,
-    /// The first body turns about z at this rate at the end, give or take a tenth of it.
+    /// The first body turns about z at this rate in the mean of the second half, give or take a twentieth of it: from one hit of its teeth to
+    /// the next it turns as it likes.
     Rate(f64),
     /// All end within this distance of where they started.
     Stays(f64),
