@@ -18,7 +18,7 @@ const SOME: usize = 64;
 /// Ratio of masses beyond which sweeps converge too slowly.
 const MOST_RATIO: f64 = 30.0;
 /// Sweeps at most, where they come first, and where they come last.
-const FIRST: u32 = 96;
+const FIRST: u32 = 192;
 const SWEEPS: u32 = 60;
 /// How much more may be left of several bodies that move, and of a crowd.
 const SEVERAL: f64 = 4.0;
