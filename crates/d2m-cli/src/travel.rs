@@ -14,6 +14,9 @@ pub(crate) struct Travel {
     pub(crate) turn: f64,
 }
 
+/// Turns up to this are one whole turn, which is no surprise: their sum rounds. It only decides about a warning.
+const ONE_TURN: f64 = TAU * (1.0 + 1e-9);
+
 impl Travel {
     /// Sums speeds at the middles of equal parts of the window.
     pub(crate) fn of(motion: &AnyMotion, window: Window) -> Self {
@@ -45,8 +48,7 @@ impl Travel {
     }
 
     pub(crate) fn turns_more_than_once(self) -> bool {
-        // The sum rounds; one whole turn is no surprise.
-        self.turn > TAU * (1.0 + 1e-9)
+        self.turn > ONE_TURN
     }
 }
 

@@ -6,7 +6,7 @@
 //! d·y ≤ Σ |aᵢ·d| hᵢ + δ (1 + δ)/(1 − δ) |d| r,
 //!
 //! and the last term is less than 2⁻²⁰ |d| r. A box that reaches no further by that than a vertex that is known is left out, so what is found
-//! is at least the value at every vertex in real arithmetic, but for the roundings of the values at those that are looked at.
+//! is at least the value at every vertex in real arithmetic, but for the roundings of the values at those that are computed.
 
 use crate::MeshTree;
 use d2m_lanes::UP;
