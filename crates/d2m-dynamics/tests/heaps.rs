@@ -3,9 +3,9 @@
 mod ground;
 
 use d2m_bvh::MeshTree;
-use d2m_dynamics::{Body, BodyId, Kind, Mass, Simulation, SimulationOptions};
+use d2m_dynamics::{Body, BodyId, Kind, Mass, Segment, Simulation, SimulationOptions};
 use glam::DVec3;
-use ground::tree;
+use ground::{judge_from, tree};
 use std::sync::Arc;
 
 const MANY: usize = 260;
@@ -41,10 +41,10 @@ fn laden_slab() -> (Simulation, BodyId, Vec<BodyId>) {
 }
 
 /// A step in which the first box is pushed to and fro, harder than friction holds it.
-fn push(simulation: &mut Simulation, boxes: &[BodyId], step: usize) {
+fn push(simulation: &mut Simulation, boxes: &[BodyId], step: usize) -> Vec<Segment> {
     let way = if (step / 4).is_multiple_of(2) { 1.0 } else { -1.0 };
     simulation.set_force(boxes[0], DVec3::X * (way * 4.0 * 0.125 * 9.81), DVec3::ZERO).unwrap();
-    simulation.step().unwrap();
+    simulation.step().unwrap().segments
 }
 
 fn asleep(simulation: &Simulation, of: &[BodyId]) -> usize {
@@ -92,6 +92,27 @@ fn what_is_hit_from_below_moves_at_once() {
     // Less what gravity takes in a step.
     let (most, taken) = (2.0 * all, all * 9.81 * simulation.options().step);
     assert!(momentum < most && momentum > most - taken, "{momentum} of {most}, {taken}");
+}
+
+/// What sleeps, what moves beside it, and what is hit and wakes: none of them meet.
+#[test]
+fn nothing_meets_where_parts_sleep() {
+    let (mut simulation, slab, boxes) = laden_slab();
+    let mut trees = vec![tree("box?x=300&y=0.5&z=30"), tree("box?x=20&y=0.1&z=20")];
+    let small = tree("box?x=0.25&y=0.25&z=0.25");
+    trees.extend(boxes.iter().map(|_| Arc::clone(&small)));
+    let (mut segments, mut begin) = (Vec::new(), f64::INFINITY);
+    for step in 0..150 {
+        if step == 130 {
+            assert!(asleep(&simulation, &boxes) > MANY / 2);
+            begin = simulation.time() - 0.05;
+            let push = DVec3::new(0.1, 0.5, 0.0) * (40.0 * 40.0 * 0.2);
+            simulation.apply_impulse(slab, push, DVec3::ZERO).unwrap();
+        }
+        segments.extend(push(&mut simulation, &boxes, step));
+    }
+    segments.extend(simulation.finish());
+    judge_from(begin, &segments, &trees);
 }
 
 /// A slab that is slow does next to nothing to what sleeps on it, and carries it all the same.

@@ -1,9 +1,12 @@
 //! Scenes with what must happen, and the promise: nothing ever meets.
 
-use d2m_bvh::{MeshTree, Moving, QueryOptions, Window, time_of_contact};
+mod ground;
+
+use d2m_bvh::MeshTree;
 use d2m_dynamics::{Body, BodyId, Kind, Segment, Simulation, SimulationOptions};
 use d2m_motion::ConstantTwist;
 use glam::{DQuat, DVec3};
+use ground::judge;
 use std::sync::Arc;
 
 fn tree(shape: &str) -> Arc<MeshTree> {
@@ -26,36 +29,6 @@ fn run(simulation: &mut Simulation, end: f64) -> Vec<Segment> {
     }
     segments.extend(simulation.finish());
     segments
-}
-
-/// Flies the reported twists again: they join, and no two bodies meet in any segment.
-fn judge(segments: &[Segment], trees: &[Arc<MeshTree>]) {
-    let mut flights: Vec<ConstantTwist> = Vec::new();
-    for (k, segment) in segments.iter().enumerate() {
-        for (id, flight) in &segment.changed {
-            if k == 0 {
-                assert_eq!(flights.len(), id.index());
-                flights.push(*flight);
-                continue;
-            }
-            let before = flights[id.index()].rebase(segment.start);
-            let (x, y) = (before.position(), flight.position());
-            assert!((x - y).length() <= 1e-12 * (1.0 + x.length()), "segment {k}: {x} {y}");
-            assert!(before.orientation().dot(flight.orientation()).abs() > 1.0 - 1e-14);
-            flights[id.index()] = *flight;
-        }
-        if k > 0 {
-            assert_eq!(segment.start.to_bits(), segments[k - 1].end.to_bits());
-        }
-        let window = Window::try_new(segment.start, segment.end).unwrap();
-        for a in 0..trees.len() {
-            for b in a + 1..trees.len() {
-                let moving = |i: usize| Moving::new(&*trees[i], &flights[i]);
-                let answer = time_of_contact(moving(a), moving(b), window, &QueryOptions::default()).unwrap();
-                assert!(answer.is_separated(), "segment {k}: {a} and {b} meet: {answer:?}");
-            }
-        }
-    }
 }
 
 #[test]

@@ -242,21 +242,16 @@ mod tests {
     use crate::velocity::Velocity;
     use glam::DVec3;
 
+    const EXACT: Accuracy =
+        Accuracy { precision: 1e-9, relative: 0.0, aim: 1.0, company: Company::Few, slow: 1.0, still: None };
+
     /// In one round soft rows of a column yield by far more than that under all that lies on them.
     #[test]
     fn rows_get_harder_under_tall_columns() {
         let (count, speed) = (100, 0.01);
         let mut system = column(count, speed);
-        let accuracy = Accuracy {
-            precision: 1e-9,
-            relative: 0.0,
-            aim: 1.0,
-            company: Company::Few,
-            slow: 1.0,
-            still: None,
-        };
-        let residual = system.solve_direct(&vec![0.0; count], accuracy, Start::Sticking, Effort::FULL);
-        assert!(residual < 1e-9, "{residual}");
+        let residual = system.solve_direct(&vec![0.0; count], EXACT, Start::Sticking, Effort::FULL);
+        assert!(residual < EXACT.precision, "{residual}");
     }
 
     /// What slides does not lift: without the shift by what it slides it would, as fast as friction times that.
@@ -271,16 +266,8 @@ mod tests {
         let mut contact = ContactPoint { arm_a: DVec3::ZERO, arm_b: DVec3::ZERO, ..upright([0, 1]) };
         contact.material = Material { friction: 0.3, restitution: 0.0 };
         let mut system = System::new(bodies, &[contact], |i| i);
-        let accuracy = Accuracy {
-            precision: 1e-9,
-            relative: 0.0,
-            aim: 1.0,
-            company: Company::Few,
-            slow: 1.0,
-            still: None,
-        };
-        let residual = system.solve_direct(&[0.0], accuracy, Start::Sticking, Effort::FULL);
-        assert!(residual < 1e-9, "{residual}");
+        let residual = system.solve_direct(&[0.0], EXACT, Start::Sticking, Effort::FULL);
+        assert!(residual < EXACT.precision, "{residual}");
         let off = system.bodies[1].velocity.linear - DVec3::X * 2.7;
         assert!(off.length() < 1e-8, "{off}");
     }

@@ -1,9 +1,9 @@
 //! What bodies of tests stand on, and how they come to rest.
 #![allow(dead_code)] // not every test needs all of it
 
-use d2m_bvh::MeshTree;
-use d2m_dynamics::{Body, BodyId, Kind, Simulation};
-use d2m_motion::Pose;
+use d2m_bvh::{MeshTree, Moving, QueryOptions, Window, time_of_contact};
+use d2m_dynamics::{Body, BodyId, Kind, Segment, Simulation};
+use d2m_motion::{ConstantTwist, Pose};
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
@@ -28,5 +28,43 @@ pub(crate) fn rest(simulation: &mut Simulation, body: BodyId) {
     while !simulation.is_asleep(body) {
         simulation.step().unwrap();
         assert!(simulation.time() < 20.0, "it does not come to rest");
+    }
+}
+
+/// Flies the reported twists again: they join, and no two bodies meet in any segment.
+pub(crate) fn judge(segments: &[Segment], trees: &[Arc<MeshTree>]) {
+    judge_from(f64::NEG_INFINITY, segments, trees);
+}
+
+/// The same; whether bodies meet is asked of segments from a time on.
+pub(crate) fn judge_from(begin: f64, segments: &[Segment], trees: &[Arc<MeshTree>]) {
+    let mut flights: Vec<ConstantTwist> = Vec::new();
+    for (k, segment) in segments.iter().enumerate() {
+        for (id, flight) in &segment.changed {
+            if k == 0 {
+                assert_eq!(flights.len(), id.index());
+                flights.push(*flight);
+                continue;
+            }
+            let before = flights[id.index()].rebase(segment.start);
+            let (x, y) = (before.position(), flight.position());
+            assert!((x - y).length() <= 1e-12 * (1.0 + x.length()), "segment {k}: {x} {y}");
+            assert!(before.orientation().dot(flight.orientation()).abs() > 1.0 - 1e-14);
+            flights[id.index()] = *flight;
+        }
+        if k > 0 {
+            assert_eq!(segment.start.to_bits(), segments[k - 1].end.to_bits());
+        }
+        if segment.start < begin {
+            continue;
+        }
+        let window = Window::try_new(segment.start, segment.end).unwrap();
+        for a in 0..trees.len() {
+            for b in a + 1..trees.len() {
+                let moving = |i: usize| Moving::new(&*trees[i], &flights[i]);
+                let answer = time_of_contact(moving(a), moving(b), window, &QueryOptions::default()).unwrap();
+                assert!(answer.is_separated(), "segment {k}: {a} and {b} meet: {answer:?}");
+            }
+        }
     }
 }

@@ -7,7 +7,7 @@ use d2m_motion::Pose;
 
 /// Part of the room between the bodies that a deviation may take.
 const PART_OF_ROOM: f64 = 0.25;
-/// The same where it is asked whether bodies meet at all: triangles of fitted motions that deviate by as little mostly meet on the true motions, too.
+/// The same for queries that ask only whether bodies meet: a contact of approximated motions that deviate so little is mostly one of the true motions.
 const PART_TO_MEET: f64 = 0.0625;
 /// A contact is expected after the gap has closed at the speed it closes with, and searched for this much longer.
 const OVERSHOOT: f64 = 1.25;
