@@ -1,6 +1,8 @@
 //! The flights of a body: constant twists that have the velocity of the momenta in their middle, and how long they may be.
 
 use crate::StepError;
+use crate::momenta::Momenta;
+use crate::quiet::Surface;
 use crate::rigid_body::RigidBody;
 use crate::turning::Pull;
 use crate::velocity::Velocity;
@@ -199,6 +201,22 @@ impl RigidBody {
             self.time = time;
             self.lead = self.lead.map(|lead| lead - elapsed);
         }
+    }
+
+    /// Where its surface is after a flight with this velocity.
+    pub(crate) fn surface_after(&self, velocity: Velocity, length: f64) -> Surface {
+        Surface {
+            position: self.position + velocity.linear * length,
+            orientation: self.turned(velocity.angular, length),
+            radius: self.radius,
+            speed: velocity.surface_speed(self.radius),
+        }
+    }
+
+    /// How much faster its surface is after this.
+    pub(crate) fn gain(&self, added: Momenta) -> f64 {
+        let angular = self.inverse_inertia_at(self.orientation) * added.angular;
+        Velocity { linear: added.linear * self.inverse_mass, angular }.surface_speed(self.radius)
     }
 
     /// The kinetic energy of the present flight, at its start.

@@ -17,6 +17,12 @@ impl Momenta {
         Self { linear: self.linear * factor, angular: self.angular * factor }
     }
 
+    /// Without the part, in the direction of others, that is against these.
+    pub(crate) fn without_less_of(self, other: Self) -> Self {
+        let part = self.linear.dot(other.linear) / other.linear.length_squared();
+        if part < 0.0 { self + other.times(-part) } else { self }
+    }
+
     /// Of an impulse that acts at `arm` from the center of mass.
     pub(crate) fn of_impulse(impulse: DVec3, arm: DVec3) -> Self {
         Self { linear: impulse, angular: arm.cross(impulse) }

@@ -26,6 +26,7 @@ pub(crate) struct PairState {
     apart: f64,
     axes: Attempts,
     borne: [Momenta; 2],
+    owed: [Momenta; 2],
     clearance: Option<ClearanceState>,
     contacts: Vec<ContactState>,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -68,6 +69,7 @@ impl PairState {
             apart: pair.apart,
             axes: pair.axes,
             borne: pair.borne,
+            owed: pair.owed,
             clearance: pair
                 .clearance
                 .map(|known| ClearanceState { places: known.poses.map(place), distance: known.distance }),
@@ -113,6 +115,7 @@ impl PairState {
             apart: self.apart,
             axes: self.axes,
             borne: self.borne,
+            owed: self.owed,
         })
     }
 
@@ -141,7 +144,7 @@ impl PairState {
         if !self.axes.is_counted() {
             return Some(("attempts", format!("{:?}", self.axes)));
         }
-        let borne = self.borne.iter().flat_map(|borne| [borne.linear, borne.angular]);
+        let borne = self.borne.iter().chain(&self.owed).flat_map(|borne| [borne.linear, borne.angular]);
         if let Some(borne) = borne.into_iter().find(|borne| !is_small(*borne)) {
             return Some(("what bodies that sleep bear", borne.to_string()));
         }
@@ -256,7 +259,7 @@ mod tests {
     #[test]
     fn numbers_that_no_pair_has_are_refused_by_their_names() {
         let (bodies, pair) = near();
-        let changes: [(&str, Change); 16] = [
+        let changes: [(&str, Change); 18] = [
             ("gap", &|s| s.gap = -1.0),
             ("least distance", &|s| s.nearest = Some(0.0)),
             ("time of the last measurement", &|s| s.measured = Some(f64::NAN)),
@@ -264,6 +267,8 @@ mod tests {
             ("normal", &|s| s.normal = Some(DVec3::X * 1.001)),
             ("distance", &|s| s.apart = f64::INFINITY),
             ("attempts", &|s| s.axes = Attempts { failed: u32::MAX, ..s.axes }),
+            ("what bodies that sleep bear", &|s| s.borne[0].linear = DVec3::NAN),
+            ("what bodies that sleep bear", &|s| s.owed[1].angular.y = 1e160),
             ("place", &|s| s.clearance.as_mut().unwrap().places[0].position = DVec3::NAN),
             ("normal of a contact", &|s| s.contacts[0].normal = DVec3::ZERO),
             ("restitution", &|s| s.contacts[0].restitution = 2.0),

@@ -60,8 +60,10 @@ pub(crate) struct Pair {
     pub(crate) apart: f64,
     /// When a proof from an axis is tried.
     pub(crate) axes: Attempts,
-    /// What the contacts did to each of the bodies, in a unit of time, when it fell asleep.
+    /// What the contacts do to each of the bodies, in a unit of time, on average; where it sleeps, what they did when it fell asleep.
     pub(crate) borne: [Momenta; 2],
+    /// What they have done to it since, besides that.
+    pub(crate) owed: [Momenta; 2],
 }
 
 /// What is tried again after as many flights as it has failed in a row.
@@ -108,6 +110,7 @@ impl Pair {
             apart: 0.0,
             axes: Attempts::default(),
             borne: [Momenta::default(); 2],
+            owed: [Momenta::default(); 2],
         }
     }
 
@@ -136,11 +139,6 @@ impl Pair {
         let along = |normal| bound_along(normal, DVec3::ZERO, &placed, 0.0);
         self.clearance.is_some_and(|known| known.bound(&placed, 0.0) > margin)
             || self.normal.and_then(along).is_some_and(|apart| apart > margin)
-    }
-
-    /// What the impulses of the contacts did to the momenta of one of the bodies.
-    pub(crate) fn exerted(&self, on: usize) -> Momenta {
-        self.contacts.iter().map(|contact| contact.exerted(on)).fold(Momenta::default(), |sum, one| sum + one)
     }
 
     /// The separation at which a flight of the pair ends.

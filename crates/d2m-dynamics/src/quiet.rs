@@ -32,9 +32,8 @@ pub(crate) struct Quiet {
     time: f64,
     /// How fast its surface was at least in that time.
     slowest: f64,
-    /// Where it was when that began.
-    position: DVec3,
-    orientation: DQuat,
+    /// Where it was when that began; none: it has not begun.
+    place: Option<(DVec3, DQuat)>,
 }
 
 /// Where a body's surface is after a step, and how fast in it.
@@ -70,23 +69,29 @@ impl Quiet {
         let is_quiet = match rest {
             Rest::Unbraked => surface.speed <= still.min(steady),
             Rest::BySpeed => surface.speed <= (way / QUIET_TIME).min(steady),
-            Rest::ByWay => self.way_to(surface) <= SHAKEN_WAY * options.gap,
+            Rest::ByWay => !self.is_left_by(surface, options.gap),
         };
         if is_quiet {
             self.time += step;
             self.slowest = self.slowest.min(surface.speed);
         } else {
             let Surface { position, orientation, speed, .. } = surface;
-            *self = Self { time: 0.0, slowest: speed, position, orientation };
+            *self = Self { time: 0.0, slowest: speed, place: Some((position, orientation)) };
         }
     }
 
+    /// Is a surface further from where it was in the quiet time than solutions shake it?
+    pub(crate) fn is_left_by(&self, surface: Surface, gap: f64) -> bool {
+        self.way_to(surface).is_none_or(|way| way > SHAKEN_WAY * gap)
+    }
+
     /// How far a point of the surface has come at most.
-    fn way_to(&self, surface: Surface) -> f64 {
-        let turn = surface.orientation * self.orientation.conjugate();
+    fn way_to(&self, surface: Surface) -> Option<f64> {
+        let (position, orientation) = self.place?;
+        let turn = surface.orientation * orientation.conjugate();
         // A chord: twice the sine of half of the angle.
         let chord = 2.0 * DVec3::new(turn.x, turn.y, turn.z).length();
-        (surface.position - self.position).length() + chord * surface.radius
+        Some((surface.position - position).length() + chord * surface.radius)
     }
 }
 

@@ -4,7 +4,7 @@
 use crate::Simulation;
 use crate::contact::{ContactPoint, NEAR};
 use crate::group::CROWD;
-use crate::quiet::{Quiet, Rest, Surface};
+use crate::quiet::{Quiet, Rest};
 use crate::rigid_body::RigidBody;
 use crate::union::{join, root};
 use crate::velocity::Velocity;
@@ -48,12 +48,7 @@ impl Simulation {
                 (true, false) => Rest::BySpeed,
                 (true, true) => Rest::ByWay,
             };
-            let surface = Surface {
-                position: body.position,
-                orientation: body.orientation,
-                radius: body.radius,
-                speed: body.surface_speed(),
-            };
+            let surface = body.surface_after(body.present_velocity(), 0.0);
             body.quiet.go_on(surface, rest, step, &self.options);
         }
         if self.sleeps_in_parts() {
@@ -100,18 +95,11 @@ impl Simulation {
         let in_parts = self.sleeps_in_parts();
         let awake = if in_parts { beside(&restless, &together) } else { connected(&restless, &together) };
         let falls_asleep = |body: &RigidBody, i: usize| body.is_dynamic() && !body.asleep && !awake[i];
-        let fallen: Vec<bool> =
-            self.bodies.iter().enumerate().map(|(i, body)| falls_asleep(body, i)).collect();
-        for (&(a, b), pair) in &mut self.pairs {
-            for (k, i) in [a, b].into_iter().enumerate() {
-                if fallen[i] {
-                    pair.borne[k] = pair.exerted(k).times(1.0 / step);
-                }
+        for (i, body) in self.bodies.iter_mut().enumerate() {
+            if falls_asleep(body, i) {
+                sleep(body, in_parts);
+                self.recorder.change(body.id, body.flight);
             }
-        }
-        for (body, _) in self.bodies.iter_mut().zip(fallen).filter(|(_, fallen)| *fallen) {
-            sleep(body, in_parts);
-            self.recorder.change(body.id, body.flight);
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Which bodies touch, and since when.
 
 use crate::measured::AROUND;
+use crate::momenta::Momenta;
 use crate::rigid_body::Role;
 use crate::{BodyId, Simulation, TouchChange, TouchEvent};
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 impl Simulation {
     /// Do these two bodies touch, as the last [`TouchEvent`] of them said?
@@ -36,7 +37,7 @@ impl Simulation {
 
     /// At the end of a step that began at a time, in which impulses acted between the pairs `pressed`: pairs without, one of which moves and
     /// whose bodies were found apart, touch no more.
-    pub(crate) fn end_touches(&mut self, began: f64, pressed: &BTreeSet<(usize, usize)>) {
+    pub(crate) fn end_touches(&mut self, began: f64, pressed: &BTreeMap<(usize, usize), [Momenta; 2]>) {
         let most = AROUND * self.options.gap;
         let is_near = |pair: &(usize, usize)| {
             let nearest = self.pairs.get(pair).and_then(|pair| pair.nearest);
@@ -45,7 +46,7 @@ impl Simulation {
         let moves = |&(a, b): &(usize, usize)| self.bodies[a].is_awake() || self.bodies[b].is_awake();
         let is_solid = |&(a, b): &(usize, usize)| [a, b].iter().all(|&i| self.bodies[i].role == Role::Body);
         let ended = |pair: &&(usize, usize)| {
-            is_solid(pair) && !pressed.contains(*pair) && moves(pair) && !is_near(pair)
+            is_solid(pair) && !pressed.contains_key(*pair) && moves(pair) && !is_near(pair)
         };
         let ended: Vec<(usize, usize)> = self.touching.iter().filter(ended).copied().collect();
         for pair in ended {

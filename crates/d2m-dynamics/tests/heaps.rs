@@ -4,7 +4,8 @@ mod ground;
 
 use d2m_bvh::MeshTree;
 use d2m_dynamics::{Body, BodyId, Kind, Mass, Segment, Simulation, SimulationOptions};
-use glam::DVec3;
+use d2m_motion::Pose;
+use glam::{DQuat, DVec3};
 use ground::{judge_from, tree};
 use std::sync::Arc;
 
@@ -189,4 +190,85 @@ fn what_loses_its_support_tips_over() {
     let upright = (simulation.orientation(top) * DVec3::Y).y;
     assert!(upright < 0.99 && simulation.position(top).y < 0.9, "{upright}");
     assert_eq!(asleep(&simulation, &others), MANY);
+}
+
+/// A row of boxes that sleep on a slippery floor is pushed from one end, by less than counts in a step and by twice of what friction holds. What each
+/// takes of it until it wakes adds up to less than a fifth of a second.
+#[test]
+fn what_is_pushed_little_by_little_moves() {
+    let friction = 0.05;
+    let mut simulation = simulation_on(friction);
+    let cube = tree("box?x=0.5&y=0.5&z=0.5");
+    let put = |simulation: &mut Simulation, friction: f64, x: f64, z: f64| {
+        simulation.add(&body("box", &cube, friction, DVec3::new(x, 0.501, z))).unwrap()
+    };
+    let row: Vec<BodyId> = (0..5).map(|k| put(&mut simulation, friction, 1.001 * k as f64, 0.0)).collect();
+    let others: Vec<BodyId> =
+        (0..MANY).map(|k| put(&mut simulation, 0.5, 2.0 * k as f64 - 260.0, 10.0)).collect();
+    for between in row.windows(2) {
+        simulation.set_pair(between[0], between[1], 0.0, 0.0).unwrap();
+    }
+    while asleep(&simulation, &row) < row.len() || asleep(&simulation, &others) < MANY {
+        assert!(simulation.time() < 5.0);
+        simulation.step().unwrap();
+    }
+    let (weight, begin) = (9.81, simulation.time());
+    while simulation.time() < begin + 2.0 {
+        simulation.set_force(row[0], DVec3::X * (0.5 * weight), DVec3::ZERO).unwrap();
+        simulation.step().unwrap();
+    }
+    let acceleration = (0.5 - 5.0 * friction) * weight / 5.0;
+    let way = |time: f64| 0.5 * acceleration * time * time;
+    let came = simulation.position(row[4]).x - 4.004;
+    assert!(came > way(1.8) && came < way(2.0), "{came} of {}", way(2.0));
+    assert_eq!(asleep(&simulation, &others), MANY);
+}
+
+/// A stack that sleeps on a shelf of this kind, beside others that sleep.
+fn laden_shelf(kind: Kind) -> (Simulation, BodyId, Vec<BodyId>, Vec<BodyId>) {
+    let mut simulation = simulation_on(0.5);
+    let shelf = body("shelf", &tree("box?x=1&y=0.1&z=1"), 0.5, DVec3::Y * 10.0).with_kind(kind);
+    let shelf = simulation.add(&shelf).unwrap();
+    let cube = tree("box?x=0.5&y=0.5&z=0.5");
+    let mut put = |position: DVec3| simulation.add(&body("box", &cube, 0.5, position)).unwrap();
+    let stack: Vec<BodyId> = (0..5).map(|k| put(DVec3::Y * (10.601 + 1.001 * k as f64))).collect();
+    let others: Vec<BodyId> =
+        (0..MANY).map(|k| put(DVec3::new(2.0 * k as f64 - 260.0, 0.501, 10.0))).collect();
+    while asleep(&simulation, &stack) < stack.len() || asleep(&simulation, &others) < MANY {
+        assert!(simulation.time() < 5.0);
+        simulation.step().unwrap();
+    }
+    (simulation, shelf, stack, others)
+}
+
+/// It falls as one where the shelf is gone.
+#[test]
+fn what_falls_takes_along_what_sleeps_on_it() {
+    let (mut simulation, shelf, stack, others) = laden_shelf(Kind::Static);
+    simulation.remove(shelf);
+    for _ in 0..50 {
+        simulation.step().unwrap();
+        for between in stack.windows(2) {
+            let apart = simulation.position(between[1]).y - simulation.position(between[0]).y;
+            assert!((apart - 1.001).abs() < simulation.options().gap, "{apart}");
+        }
+    }
+    assert_eq!(asleep(&simulation, &others), MANY);
+}
+
+/// And is raised as one where the shelf is a lift: nothing sleeps in its way.
+#[test]
+fn a_lift_raises_what_sleeps_on_it() {
+    let (mut simulation, lift, stack, _) = laden_shelf(Kind::Driven);
+    let begin = stack.iter().map(|&body| simulation.position(body).y).collect::<Vec<_>>();
+    let rise = 0.002;
+    for k in 1..=100 {
+        let target = Pose::new(DVec3::Y * (10.0 + rise * f64::from(k)), DQuat::IDENTITY);
+        simulation.set_target(lift, target).unwrap();
+        simulation.step().unwrap();
+    }
+    for (&body, begin) in stack.iter().zip(begin) {
+        let came = simulation.position(body).y - begin;
+        assert!((came - 100.0 * rise).abs() < simulation.options().gap, "{came}");
+    }
 }

@@ -62,7 +62,7 @@ impl Step<'_> {
                     let body = &mut self.sim.bodies[i];
                     body.advance(time, gravity);
                     body.held = true;
-                    body.asleep = false;
+                    body.wake(time);
                     body.fly(Velocity::default(), self.end);
                     self.sim.recorder.change(body.id, body.flight);
                     changed.push(i);

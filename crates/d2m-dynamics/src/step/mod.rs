@@ -11,6 +11,7 @@ mod sense;
 mod sleepers;
 
 use crate::contact::{ContactPoint, HIT};
+use crate::momenta::Momenta;
 use crate::rigid_body::RigidBody;
 use crate::{ContactListener, Simulation, StepError, StepReport};
 use event::{Cause, Event};
@@ -69,8 +70,8 @@ pub(crate) struct Step<'s> {
     /// Impulses of the present instant, and those of contacts that flights could still be planned without.
     impulses: Vec<ContactPoint>,
     undoable: Vec<ContactPoint>,
-    /// Pairs between which impulses have acted.
-    pressed: BTreeSet<Key>,
+    /// Pairs between which impulses have acted, and what these did to each of the bodies.
+    pressed: BTreeMap<Key, [Momenta; 2]>,
     /// Until when sensors have looked.
     sensed: f64,
     /// When each body that slept was woken in this step.
@@ -102,7 +103,7 @@ impl<'s> Step<'s> {
             expected: Expected::default(),
             impulses: Vec::new(),
             undoable: Vec::new(),
-            pressed: BTreeSet::new(),
+            pressed: BTreeMap::new(),
             sensed: start,
             woken,
             disturbed: BTreeSet::new(),
@@ -264,6 +265,7 @@ impl<'s> Step<'s> {
         let energy: f64 = self.sim.bodies.iter().map(RigidBody::flight_energy).sum();
         self.sim.greatest_energy = self.sim.greatest_energy.max(energy);
         self.sim.time = time;
+        self.weigh(time);
         self.sim.put_to_sleep(length);
         for i in core::mem::take(&mut self.disturbed) {
             self.sim.bodies[i].wake(time);

@@ -243,27 +243,32 @@ impl Step<'_> {
         Ok(self.solve_islands(group, clock, before, &renewed, occasion))
     }
 
+    /// With which a body flies on.
+    pub(super) fn next_velocity(
+        &self,
+        i: usize,
+        group: &Group,
+        found: &BTreeMap<usize, Velocity>,
+        clock: Clock,
+    ) -> Velocity {
+        let body = &self.sim.bodies[i];
+        match found.get(&i) {
+            Some(velocity) => *velocity,
+            None if group.is_member[i] && moves(body) => {
+                body.flight_velocity(clock.end - clock.now, self.sim.options.gravity)
+            }
+            None => body.present_velocity(),
+        }
+    }
+
     /// The bodies outside of the group that members with these velocities come closer to than contacts allow, or that they were pressed
     /// by and leave, ascending.
     fn pressed(&self, group: &Group, solved: &[Solved], clock: Clock, scope: Scope) -> Vec<usize> {
         if scope == Scope::Connected {
             return Vec::new();
         }
-        let gravity = self.sim.options.gravity;
-        let mut velocities = BTreeMap::new();
-        for push in solved.iter().flat_map(|part| &part.bodies) {
-            velocities.insert(push.body, push.velocity);
-        }
-        let velocity = |i: usize| {
-            let body = &self.sim.bodies[i];
-            match velocities.get(&i) {
-                Some(velocity) => *velocity,
-                None if group.is_member[i] && moves(body) => {
-                    body.flight_velocity(clock.end - clock.now, gravity)
-                }
-                None => body.present_velocity(),
-            }
-        };
+        let velocities = found_velocities(solved);
+        let velocity = |i: usize| self.next_velocity(i, group, &velocities, clock);
         let outside = |i: usize| !group.is_member[i] && group.may_move(&self.sim.bodies[i]);
         let length = clock.end - clock.now;
         let closes = |contact: &&ContactPoint| {
@@ -325,9 +330,17 @@ impl Step<'_> {
                 };
                 self.listener.contact(&impulse);
                 self.sim.recorder.contact(impulse);
-                self.pressed.insert((contact.a, contact.b));
+                let pressed = self.pressed.entry((contact.a, contact.b)).or_default();
+                for (on, pressed) in pressed.iter_mut().enumerate() {
+                    *pressed = *pressed + contact.exerted(on);
+                }
                 self.sim.begin_touch((contact.a, contact.b), impulse.time);
             }
         }
     }
+}
+
+/// The velocities that solutions have found, by body.
+pub(super) fn found_velocities(solved: &[Solved]) -> BTreeMap<usize, Velocity> {
+    solved.iter().flat_map(|part| &part.bodies).map(|push| (push.body, push.velocity)).collect()
 }

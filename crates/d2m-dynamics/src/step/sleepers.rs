@@ -1,11 +1,14 @@
 //! Bodies that sleep in a heap of which parts move.
 
 use super::connected::{Group, Sleepers};
+use super::resolve::found_velocities;
 use super::{Occasion, Step};
+use crate::Simulation;
+use crate::contact::{ContactPoint, NEAR};
 use crate::flight_length::Clock;
 use crate::group::Solved;
 use crate::momenta::Momenta;
-use crate::velocity::Velocity;
+use crate::quiet::QUIET_TIME;
 use std::collections::BTreeMap;
 
 /// What sleeps wakes, when the step ends, where what touches it does more to it than what it has borne: by this part of all that it bears
@@ -13,6 +16,9 @@ use std::collections::BTreeMap;
 const DISTURBED: f64 = 0.5;
 /// The part of the resting speed in that where bodies meet: what they bring is there only once.
 const MET: f64 = 1.0 / 8.0;
+
+/// The time about which what bodies bear is averaged: as long as what has woken stays awake at least.
+const WEIGHED_TIME: f64 = 0.25 * QUIET_TIME;
 
 /// What is done to a body that sleeps: what more than it has borne from what is solved, and all impulses that it bears in that time.
 #[derive(Clone, Copy, Debug, Default)]
@@ -31,6 +37,47 @@ impl Step<'_> {
         if matches!(occasion, Occasion::Expected | Occasion::Plan { .. }) {
             for contact in self.undoable.iter().filter(|c| c.a == i || c.b == i) {
                 body.push(contact.exerted(usize::from(contact.b == i)));
+            }
+        }
+    }
+
+    /// At the end of a step: what touches a body that is awake does to it on average, and what has been done to those that sleep besides what they
+    /// bore when they fell asleep. Any of it that goes on adds up, however little it is in a step, and wakes them. Less than what was borne, in
+    /// its direction, does not count: of what does not move away any push up to that obeys the law.
+    pub(super) fn weigh(&mut self, end: f64) {
+        if !self.sim.sleeps_in_parts() {
+            return;
+        }
+        let Simulation { bodies, pairs, options, .. } = &mut *self.sim;
+        let since = |i: usize| self.woken[i].unwrap_or(self.start);
+        let step = end - self.start;
+        let mut changes = BTreeMap::<usize, Change>::new();
+        for (&(a, b), pair) in pairs.iter_mut() {
+            let lasted = end - since(a).max(since(b));
+            let pressed = self.pressed.get(&(a, b)).copied().unwrap_or_default();
+            for (k, (i, other)) in [(a, b), (b, a)].into_iter().enumerate() {
+                let borne = pair.borne[k];
+                if !bodies[i].asleep {
+                    pair.owed[k] = Momenta::default();
+                    if lasted > 0.0 {
+                        let part = (lasted / WEIGHED_TIME).min(1.0);
+                        pair.borne[k] = borne.times(1.0 - part) + pressed[k].times(part / lasted);
+                    }
+                    continue;
+                }
+                if bodies[other].is_awake() {
+                    pair.owed[k] = (pair.owed[k] + pressed[k] + borne.times(-lasted)).without_less_of(borne);
+                }
+                let change = changes.entry(i).or_default();
+                change.momenta = change.momenta + pair.owed[k];
+                change.borne += borne.linear.length() * step;
+            }
+        }
+        for (i, Change { momenta, borne }) in changes {
+            let body = &bodies[i];
+            let most = options.resting_speed() + borne * body.inverse_mass;
+            if body.gain(momenta) > DISTURBED * most {
+                self.disturbed.insert(i);
             }
         }
     }
@@ -89,12 +136,7 @@ impl Step<'_> {
         let (mut hit, mut disturbed) = (Vec::new(), Vec::new());
         for (i, Change { momenta, borne }) in changes {
             let body = &bodies[i];
-            let gained = Velocity {
-                linear: momenta.linear * body.inverse_mass,
-                angular: body.inverse_inertia_at(body.orientation) * momenta.angular,
-            };
-            let most = resting + borne * body.inverse_mass;
-            let part = gained.surface_speed(body.radius) / most;
+            let part = body.gain(momenta) / (resting + borne * body.inverse_mass);
             if part > 1.0 {
                 hit.push(i);
             } else if part > DISTURBED {
@@ -102,6 +144,26 @@ impl Step<'_> {
             }
         }
         self.disturbed.extend(disturbed);
+        hit.extend(self.left(group, solved, clock));
+        hit.sort_unstable();
+        hit.dedup();
         hit
+    }
+
+    /// The bodies that sleep and that touch what moves, with these solutions, by more than what is quiet does: they wake with it and not after it.
+    fn left(&self, group: &Group, solved: &[Solved], clock: Clock) -> Vec<usize> {
+        let (bodies, gap) = (&self.sim.bodies, self.sim.options.gap);
+        let found = found_velocities(solved);
+        let length = clock.end - clock.now;
+        let moves = |i: usize| {
+            let body = &bodies[i];
+            group.is_member[i] && group.may_move(body) && {
+                let velocity = self.next_velocity(i, group, &found, clock);
+                body.quiet.is_left_by(body.surface_after(velocity, length), gap)
+            }
+        };
+        let touch = |contact: &&ContactPoint| contact.distance <= NEAR * contact.gap;
+        let ends = group.contacts.iter().filter(touch).flat_map(|c| [(c.a, c.b), (c.b, c.a)]);
+        ends.filter(|&(i, other)| bodies[i].asleep && moves(other)).map(|(i, _)| i).collect()
     }
 }
