@@ -157,6 +157,11 @@ impl Simulation {
         &self.options
     }
 
+    /// Is there a joint that was not taken out?
+    pub(crate) fn has_joints(&self) -> bool {
+        !self.joints.iter().all(Joined::is_gone)
+    }
+
     /// How many bodies there are.
     pub fn len(&self) -> usize {
         self.bodies.iter().filter(|body| body.role.is_named()).count()

@@ -17,7 +17,7 @@ impl Simulation {
     /// Do bodies of a heap sleep while others of it move? Among many bodies something always does, and what it does to the others is solved
     /// as if these were fixed, as long as it stays about what it was.
     pub(crate) fn sleeps_in_parts(&self) -> bool {
-        self.bodies.len() > MANY && self.joints.is_empty()
+        self.len() > MANY && !self.has_joints()
     }
 
     /// After a step of length `step`: counts how long each body has been slow, and puts islands to sleep that touch
@@ -36,7 +36,7 @@ impl Simulation {
                 }
             }
         }
-        let is_crowd = self.bodies.len() > CROWD;
+        let is_crowd = self.len() > CROWD;
         for (i, body) in self.bodies.iter_mut().enumerate() {
             if !body.is_dynamic() || body.asleep {
                 continue;

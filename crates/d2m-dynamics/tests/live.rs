@@ -329,6 +329,41 @@ fn a_changed_simulation_is_one_that_was_built_so() {
     }
 }
 
+/// What has gone does not make a crowd of the others, and a joint that was taken out no jointed bodies of them.
+#[test]
+fn what_has_gone_counts_for_nothing() {
+    let small = tree("box?x=0.3&y=0.3&z=0.3");
+    let after = |count: usize, gone: usize, joints: usize| {
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        simulation.add(&floor()).unwrap();
+        let mut add = |turn: f64, position: DVec3| {
+            let turned = DQuat::from_rotation_x(turn);
+            let body = Body::new("box", Arc::clone(&small)).with_orientation(turned).with_position(position);
+            simulation.add(&body.with_friction(0.5)).unwrap()
+        };
+        let place = |k: usize| DVec3::new((k % 4) as f64, 0.6 + 1.1 * (k / 16) as f64, (k % 16 / 4) as f64);
+        let boxes: Vec<BodyId> = (0..count).map(|k| add(0.1 * k as f64, 1.2 * place(k))).collect();
+        let others: Vec<BodyId> =
+            (0..gone).map(|k| add(0.0, DVec3::new(50.0, 2.0 * k as f64, 0.0))).collect();
+        // Behind them, so that their places stay.
+        let last = add(0.0, DVec3::new(-50.0, 0.4, 0.0));
+        for other in others {
+            simulation.remove(other);
+        }
+        for _ in 0..joints {
+            let joint = Joint::new(JointKind::Fixed, last, None, DVec3::ZERO);
+            let joint = simulation.add_joint(&joint).unwrap();
+            simulation.remove_joint(joint);
+        }
+        for _ in 0..120 {
+            simulation.step().unwrap();
+        }
+        boxes.iter().map(|&body| simulation.pose(body)).collect::<Vec<_>>()
+    };
+    assert_eq!(after(48, 0, 0), after(48, 20, 0));
+    assert_eq!(after(70, 0, 0), after(70, 0, 1));
+}
+
 /// Refused changes change nothing, to the bit.
 #[test]
 fn what_is_refused_changes_nothing() {

@@ -14,6 +14,7 @@ use crate::contact::{ContactPoint, HIT};
 use crate::momenta::Momenta;
 use crate::rigid_body::RigidBody;
 use crate::{ContactListener, Simulation, StepError, StepReport};
+use connected::Sleepers;
 use event::{Cause, Event};
 use expect::Expected;
 use glam::DVec3;
@@ -76,6 +77,10 @@ pub(crate) struct Step<'s> {
     sensed: f64,
     /// When each body that slept was woken in this step.
     woken: Vec<Option<f64>>,
+    /// How many bodies there are, and whether joints: places that are free, and joints that are gone, count for nothing.
+    count: usize,
+    has_joints: bool,
+    sleepers: Sleepers,
     /// What sleeps and is to wake when the step ends.
     disturbed: BTreeSet<usize>,
 }
@@ -89,6 +94,8 @@ impl<'s> Step<'s> {
         let margin = options.gap + slow * options.step;
         let start = sim.time;
         let woken = vec![None; sim.bodies.len()];
+        let (count, has_joints) = (sim.len(), sim.has_joints());
+        let sleepers = if sim.sleeps_in_parts() { Sleepers::Bear } else { Sleepers::Wake };
         Self {
             sim,
             listener,
@@ -106,6 +113,9 @@ impl<'s> Step<'s> {
             pressed: BTreeMap::new(),
             sensed: start,
             woken,
+            count,
+            has_joints,
+            sleepers,
             disturbed: BTreeSet::new(),
         }
     }

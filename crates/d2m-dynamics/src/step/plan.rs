@@ -48,7 +48,7 @@ impl Step<'_> {
             return Ok(false);
         }
         let gravity = self.sim.options.gravity;
-        let is_crowd = self.sim.bodies.len() > CROWD && self.sim.joints.is_empty();
+        let is_crowd = self.count > CROWD && !self.has_joints;
         let cut = |(i, body): (usize, &RigidBody)| {
             // In a crowd there is always something that meets: it cuts its own bodies' flights, and the others fly on.
             if is_crowd && !event.bodies.contains(&i) {
@@ -72,7 +72,7 @@ impl Step<'_> {
         }
         let each = most / cuts.iter().filter(|&&cut| cut > 0.0).count() as f64;
         let concerned: Vec<usize> = (0..cuts.len()).filter(|&i| cuts[i] > each).collect();
-        let budget = MOST_IN_A_STEP + MOST_OF_A_BODY * self.sim.bodies.len().min(MOST_BODIES);
+        let budget = MOST_IN_A_STEP + MOST_OF_A_BODY * self.count.min(MOST_BODIES);
         if self.replans.all + concerned.len() > budget {
             return Ok(false);
         }
@@ -94,7 +94,7 @@ impl Step<'_> {
     pub(super) fn is_balanced(&self, body: &RigidBody, time: f64) -> bool {
         let lead = body.lead.unwrap_or_default();
         let off = power(body, self.sim.options.gravity).abs() * (lead - 0.5 * (self.end - time)).abs();
-        off * self.sim.bodies.len() as f64 <= UNBALANCED * self.sim.greatest_energy
+        off * self.count as f64 <= UNBALANCED * self.sim.greatest_energy
     }
 
     /// When the bodies of an event meet if some of them get flights that end then.

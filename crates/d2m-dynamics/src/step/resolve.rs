@@ -43,7 +43,7 @@ impl Step<'_> {
         seeds: Vec<usize>,
         occasion: Occasion,
     ) -> Result<(), StepError> {
-        let sleepers = if self.sim.sleeps_in_parts() { Sleepers::Bear } else { Sleepers::Wake };
+        let sleepers = self.sleepers;
         let mut group = Group::new(self.sim.bodies.len(), sleepers);
         let seeds = self.awake_or_driven(seeds, sleepers);
         let until = if let Occasion::Plan { until } = occasion { until } else { self.end };
@@ -51,10 +51,10 @@ impl Step<'_> {
         let renewed = if occasion.is_event() { seeds.clone() } else { Vec::new() };
         let is_local = match occasion {
             Occasion::Event => true,
-            Occasion::Expected => self.sim.bodies.len() > CROWD && seeds.len() <= FEW,
+            Occasion::Expected => self.count > CROWD && seeds.len() <= FEW,
             _ => false,
         };
-        let scope = if is_local && self.sim.joints.is_empty() { Scope::Nearby } else { Scope::Connected };
+        let scope = if is_local && !self.has_joints { Scope::Nearby } else { Scope::Connected };
         let solved = self.solve_in_rounds(&mut group, seeds, clock, occasion, scope)?;
         if !matches!(occasion, Occasion::Plan { .. } | Occasion::Expected) {
             self.impulses.append(&mut self.undoable);
@@ -94,7 +94,7 @@ impl Step<'_> {
             self.keep(part, occasion);
         }
         let (gravity, step) = (self.sim.options.gravity, self.sim.options.step);
-        let splits = if self.sim.bodies.len() > CROWD { Splits::Common } else { Splits::Own };
+        let splits = if self.count > CROWD { Splits::Common } else { Splits::Own };
         for &i in &group.members {
             let body = &mut self.sim.bodies[i];
             if moves(body) && !solved_for[i] {
@@ -134,7 +134,7 @@ impl Step<'_> {
     /// Among what the bodies of a solution are: only what the step's own one leaves is solved again in any case.
     fn company(&self, occasion: Occasion) -> Company {
         match occasion {
-            _ if self.sim.bodies.len() <= CROWD => Company::Few,
+            _ if self.count <= CROWD => Company::Few,
             Occasion::Start => Company::Crowd,
             _ => Company::Heap,
         }

@@ -45,7 +45,7 @@ impl Step<'_> {
     /// bore when they fell asleep. Any of it that goes on adds up, however little it is in a step, and wakes them. Less than what was borne, in
     /// its direction, does not count: of what does not move away any push up to that obeys the law.
     pub(super) fn weigh(&mut self, end: f64) {
-        if !self.sim.sleeps_in_parts() {
+        if self.sleepers == Sleepers::Wake {
             return;
         }
         let Simulation { bodies, pairs, options, .. } = &mut *self.sim;
