@@ -208,7 +208,7 @@ impl<'a> MovingScene<'a> {
             solids: [options.solid; 2],
             units,
             end,
-            pair: PairScale::NONE,
+            pair: PairScale::default(),
             size,
             tolerance: 0.0,
             longest,

@@ -107,16 +107,16 @@ impl<'s> Search<'s> {
         self.scales = Some((time_unit, scales));
         State {
             motion: scene.relative_motion(window.start),
-            node_frames: [NodeFrame::NONE; 2],
+            node_frames: Default::default(),
             expander: expander(scene, scales),
             step,
             limit: (length / step).ceil() as u32 + 1,
             // A tick more, so that the end itself is inside; what is found after the end does not count.
             limit_offset: length + step,
-            frame: Frame::NONE,
+            frame: Frame::default(),
             frame_key: 0,
             found: None,
-            behind: BackwardCertificate { reversed: Frame::NONE, direction: DVec3::ZERO },
+            behind: BackwardCertificate::default(),
             parting: self.limits.parting.map(|triangles| Witness::new(scene, triangles)),
             ahead: None,
         }

@@ -1,15 +1,13 @@
 //! Sums whose rounding does not grow with the number of terms (Neumaier 1974).
 
 /// A running sum and what its roundings have lost.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sum {
     total: f64,
     lost: f64,
 }
 
 impl Sum {
-    pub(super) const ZERO: Self = Self { total: 0.0, lost: 0.0 };
-
     pub(super) fn add(&mut self, term: f64) {
         let total = self.total + term;
         self.lost += if self.total.abs() >= term.abs() {

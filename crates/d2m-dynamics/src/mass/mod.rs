@@ -162,9 +162,9 @@ pub(crate) fn integrate(mesh: &TriMesh) -> MassProperties {
         }
     }
     let origin = 0.5 * (low + high);
-    let mut volume = Sum::ZERO;
-    let mut first = [Sum::ZERO; 3];
-    let mut second = [Sum::ZERO; 6];
+    let mut volume = Sum::default();
+    let mut first = [Sum::default(); 3];
+    let mut second = [Sum::default(); 6];
     for triangle in 0..mesh.triangle_count() {
         let [a, b, c] = mesh.corners(triangle).map(|p| p - origin);
         let d = a.dot(b.cross(c)) / 6.0;

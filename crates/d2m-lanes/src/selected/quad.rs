@@ -6,7 +6,7 @@ use core::ops::{Add, Div, Mul, Sub};
 use glam::DVec3;
 
 /// Four doubles in memory; registers that hold them are [`Doubles`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
 pub struct Quad(pub [f64; 4]);
 
@@ -143,7 +143,7 @@ impl<D: Elementwise<Scalar = f64>> Mul<D> for QuadVec<D> {
 }
 
 /// Columns of a 3×3 matrix, each with a zero below.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Matrix(pub [Quad; 3]);
 
 impl Matrix {

@@ -15,7 +15,7 @@ pub(crate) const SPEED_ERROR: f32 = 48.0 * UNIT_F32 as f32;
 const HINT: f32 = 0.0625;
 
 /// The single body in the frame of the wide body at one time, in the units of [`NodeScale`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct NodeFrame {
     rotation: Matrix,
     /// The same rounded to `f32`.
@@ -36,8 +36,9 @@ pub(crate) struct NodeFrame {
 }
 
 /// What pairs of boxes are tested by besides their own directions.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) enum Further {
+    #[default]
     None,
     /// This direction, by the wide body's axes.
     Along([f32; 3]),
@@ -53,20 +54,6 @@ pub(crate) enum Expanded {
 }
 
 impl NodeFrame {
-    /// What is there before the first one.
-    pub(crate) const NONE: Self = Self {
-        rotation: Matrix([Quad([0.0; 4]); 3]),
-        narrow: [[0.0; 4]; 3],
-        apart: Quad([0.0; 4]),
-        velocity: Quad([0.0; 4]),
-        spin_single: Matrix([Quad([0.0; 4]); 3]),
-        spin_wide: Matrix([Quad([0.0; 4]); 3]),
-        omega_wide: [0.0; 4],
-        least: 0.0,
-        speed_floor: 0.0,
-        further: Further::None,
-    };
-
     /// `left`: no later time matters, counted from the frame (a hint).
     #[inline(always)]
     pub(crate) fn new<D: Doubles>(frame: &Frame, scale: &NodeScale, expanded: Expanded, left: f32) -> Self {

@@ -64,9 +64,9 @@ impl BodyRotation {
             omega: Quad::from_vec(omega),
             omega_own: Quad::from_vec(DVec3::new(x.dot(omega), y.dot(omega), z.dot(omega))),
             omega_squared: square,
-            now: [Quad([0.0; 4]); COLUMNS],
-            first: [Quad([0.0; 4]); COLUMNS],
-            second: [Quad([0.0; 4]); COLUMNS],
+            now: [Quad::default(); COLUMNS],
+            first: [Quad::default(); COLUMNS],
+            second: [Quad::default(); COLUMNS],
         };
         for (k, p) in vectors.into_iter().enumerate() {
             let terms = turning.terms_of(p);
@@ -109,7 +109,7 @@ impl BodyRotation {
                         - z * (1.0 / 3_628_800.0
                             - z * (1.0 / 479_001_600.0 - z * (1.0 / 87_178_291_200.0 - rest2))))));
         let (f1, f2) = (D::splat(f1 * s), D::splat(f2 * (s * s)));
-        let mut out = [Quad([0.0; 4]); COLUMNS];
+        let mut out = [Quad::default(); COLUMNS];
         for (k, column) in out.iter_mut().enumerate() {
             let turned = D::load(&self.first[k]) * f1 + D::load(&self.second[k]) * f2;
             *column = (D::load(&self.now[k]) + turned).store();
@@ -120,7 +120,7 @@ impl BodyRotation {
 }
 
 /// The relative state at one time, in the frame of B (an inertial one that coincides with it then).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Frame {
     /// Offset from the start of the window.
     pub(crate) offset: f64,
@@ -142,16 +142,6 @@ pub(crate) struct PlacedFrame {
 }
 
 impl Frame {
-    /// What stands there before the first one.
-    pub(crate) const NONE: Self = Self {
-        offset: 0.0,
-        rotation: Matrix([Quad([0.0; 4]); 3]),
-        apart: Quad([0.0; 4]),
-        velocity: Quad([0.0; 4]),
-        omega_a: Quad([0.0; 4]),
-        omega_b: Quad([0.0; 4]),
-    };
-
     /// The same instant of the motion that runs backwards.
     pub(crate) fn reversed<D: Doubles>(&self) -> Self {
         let back = |v: &Quad| (D::splat(0.0) - D::load(v)).store();

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// Distances and bounds of one search, in the units of the scene.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PairScale {
     /// Distance that is to be reached: wanted separation plus δ.
     pub(crate) level: f64,
@@ -23,17 +23,6 @@ pub(crate) struct PairScale {
 }
 
 impl PairScale {
-    /// What stands there before the first one.
-    pub(crate) const NONE: Self = Self {
-        level: 0.0,
-        error: 0.0,
-        stop: 0.0,
-        slack: 0.0,
-        acceleration: 0.0,
-        arms: [DVec3::ZERO; 2],
-        centripetal: [0.0; 2],
-    };
-
     /// The distance down to which pairs are advanced.
     #[inline(always)]
     pub(crate) fn target(&self) -> f64 {

@@ -149,7 +149,7 @@ pub(crate) fn separating_axis_test<D: Doubles>(
 }
 
 /// From a contact back in time: proofs that pairs are apart before it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct BackwardCertificate {
     /// The frame of the contact with all velocities reversed ([`Frame::reversed`]): a bound on the acceleration holds
     /// backwards as well as forwards.

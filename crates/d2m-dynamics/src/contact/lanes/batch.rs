@@ -37,7 +37,7 @@ pub(super) struct Pushes<D> {
 
 impl Batch {
     pub(super) fn new(pairs: [Option<[usize; 2]>; 4], rows: Range<usize>) -> Self {
-        let none = Quad([0.0; 4]);
+        let none = Quad::default();
         Self { pairs, bodies: [[0; 4]; 2], inverse_masses: [none; 2], inverse_inertias: [[none; 9]; 2], rows }
     }
 

@@ -2,19 +2,16 @@
 
 use super::super::block::Block;
 use super::batch::{Ends, Pushes};
-use super::group::Side;
+use super::group::{Asked, Side};
 use d2m_lanes::{Doubles, Quad, QuadVec};
 use glam::DVec3;
 
-const ZERO: Quad = Quad([0.0; 4]);
-
 /// As [`Block`], lane by lane.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Cones {
     directions: [[Quad; 3]; 3],
     arms: [[Quad; 3]; 2],
     friction: Quad,
-    scale: Quad,
     mass: Quad,
     coupling: [Quad; 2],
     stopping: [Quad; 3],
@@ -22,27 +19,10 @@ pub(super) struct Cones {
     stops: Quad,
     step: Quad,
     running: [Quad; 2],
-    target: Quad,
-    spare: Quad,
 }
 
 impl Side for Cones {
-    const EMPTY: Self = Self {
-        directions: [[ZERO; 3]; 3],
-        arms: [[ZERO; 3]; 2],
-        friction: ZERO,
-        scale: ZERO,
-        mass: ZERO,
-        coupling: [ZERO; 2],
-        stopping: [ZERO; 3],
-        stops: ZERO,
-        step: ZERO,
-        running: [ZERO; 2],
-        target: ZERO,
-        spare: ZERO,
-    };
-
-    fn put(&mut self, lane: usize, block: &Block, target: f64, spare: f64) {
+    fn put(&mut self, lane: usize, block: &Block) {
         for (direction, vector) in self.directions.iter_mut().zip(block.directions) {
             put(direction, lane, vector);
         }
@@ -52,12 +32,9 @@ impl Side for Cones {
         let stopping = block.stopping.unwrap_or_default();
         let numbers = [
             (&mut self.friction, block.law.friction()),
-            (&mut self.scale, block.scale),
             (&mut self.mass, block.mass),
             (&mut self.step, block.step),
             (&mut self.stops, if block.stopping.is_some() { 1.0 } else { 0.0 }),
-            (&mut self.target, target),
-            (&mut self.spare, spare),
         ];
         for (quad, value) in numbers {
             quad.0[lane] = value;
@@ -68,21 +45,6 @@ impl Side for Cones {
         for (quad, value) in self.stopping.iter_mut().zip(stopping) {
             quad.0[lane] = value;
         }
-    }
-
-    #[inline(always)]
-    fn scale(&self) -> &Quad {
-        &self.scale
-    }
-
-    #[inline(always)]
-    fn target(&self) -> &Quad {
-        &self.target
-    }
-
-    #[inline(always)]
-    fn spare(&self) -> &Quad {
-        &self.spare
     }
 
     #[inline(always)]
@@ -100,9 +62,9 @@ impl Side for Cones {
 
     /// Along the normal what the target asks for; along the tangents what stops sliding, or that of Coulomb's length nearest to it.
     #[inline(always)]
-    fn relaxed<D: Doubles>(&self, rates: &[D; 3], own: &[D; 3]) -> [D; 3] {
+    fn relaxed<D: Doubles>(&self, asked: &Asked, rates: &[D; 3], own: &[D; 3]) -> [D; 3] {
         let zero = D::splat(0.0);
-        let along = (own[0] - (rates[0] - D::load(&self.target)) * D::load(&self.mass)).max(zero);
+        let along = (own[0] - (rates[0] - D::load(&asked.target)) * D::load(&self.mass)).max(zero);
         let added = along - own[0];
         let t = rates[1] + D::load(&self.coupling[0]) * added;
         let u = rates[2] + D::load(&self.coupling[1]) * added;
@@ -148,10 +110,10 @@ impl Side for Cones {
     }
 
     #[inline(always)]
-    fn natural_map<D: Doubles>(&self, rates: &[D; 3], own: &[D; 3]) -> D {
-        let scale = D::load(&self.scale);
+    fn natural_map<D: Doubles>(&self, asked: &Asked, rates: &[D; 3], own: &[D; 3]) -> D {
+        let scale = D::load(&asked.scale);
         let shift = D::load(&self.friction) * (rates[1] * rates[1] + rates[2] * rates[2]).sqrt();
-        let above = rates[0] + (shift - D::load(&self.target));
+        let above = rates[0] + (shift - D::load(&asked.target));
         let aimed = [own[0] - above / scale, own[1] - rates[1] / scale, own[2] - rates[2] / scale];
         let nearest = self.projected(&aimed);
         let (n, t, u) = (own[0] - nearest[0], own[1] - nearest[1], own[2] - nearest[2]);

@@ -9,30 +9,39 @@ use core::ops::Range;
 use d2m_lanes::{Doubles, Quad};
 
 /// A block in each lane.
-pub(super) trait Side: Clone {
-    /// Blocks that nothing moves.
-    const EMPTY: Self;
-
-    /// Puts a block, with its target and spare, into a lane.
-    fn put(&mut self, lane: usize, block: &Block, target: f64, spare: f64);
-    fn scale(&self) -> &Quad;
-    fn target(&self) -> &Quad;
-    fn spare(&self) -> &Quad;
+pub(super) trait Side: Clone + Default {
+    /// Puts a block into a lane.
+    fn put(&mut self, lane: usize, block: &Block);
     fn rates<D: Doubles>(&self, ends: &Ends<D>) -> [D; 3];
     /// The impulses with which blocks obey their laws, at the rates that they have with those of now.
-    fn relaxed<D: Doubles>(&self, rates: &[D; 3], own: &[D; 3]) -> [D; 3];
+    fn relaxed<D: Doubles>(&self, asked: &Asked, rates: &[D; 3], own: &[D; 3]) -> [D; 3];
     /// The nearest impulses that the laws allow.
     fn projected<D: Doubles>(&self, impulses: &[D; 3]) -> [D; 3];
     /// How far impulses are from what the laws ask for, as rates; see `System::residual`.
-    fn natural_map<D: Doubles>(&self, rates: &[D; 3], own: &[D; 3]) -> D;
+    fn natural_map<D: Doubles>(&self, asked: &Asked, rates: &[D; 3], own: &[D; 3]) -> D;
     fn pushes<D: Doubles>(&self, impulses: &[D; 3]) -> Pushes<D>;
+}
+
+/// What is asked of the block in each lane, whatever its kind; zero where there is none.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Asked {
+    pub(super) scale: Quad,
+    pub(super) target: Quad,
+    spare: Quad,
+}
+
+/// A block in each lane, none at first.
+#[derive(Clone, Debug, Default)]
+struct Row<S> {
+    side: S,
+    asked: Asked,
 }
 
 /// Blocks of one kind, their impulses, and what sweeps go on along.
 #[derive(Clone, Debug)]
 pub(super) struct Group<S> {
     batches: Vec<Batch>,
-    sides: Vec<S>,
+    rows: Vec<Row<S>>,
     /// The blocks' places in the system.
     places: Vec<[Option<usize>; 4]>,
     pub(super) impulses: Vec<[Quad; 3]>,
@@ -103,14 +112,14 @@ impl<S: Side> Group<S> {
     pub(super) fn new(layers: &[Vec<OfPair>]) -> Self {
         let chunks = || layers.iter().flat_map(|layer| layer.chunks(4));
         let most = |pairs: &[OfPair]| pairs.iter().map(|pair| pair.blocks.len()).max().unwrap_or_default();
-        let sides = chunks().map(most).sum();
+        let rows = chunks().map(most).sum();
         let mut group = Self {
             batches: Vec::with_capacity(chunks().count()),
-            sides: vec![S::EMPTY; sides],
-            places: Vec::with_capacity(sides),
-            impulses: vec![[Quad([0.0; 4]); 3]; sides],
-            begun: vec![[Quad([0.0; 4]); 3]; sides],
-            way: vec![[Quad([0.0; 4]); 3]; sides],
+            rows: vec![Row::default(); rows],
+            places: Vec::with_capacity(rows),
+            impulses: vec![[Quad::default(); 3]; rows],
+            begun: vec![[Quad::default(); 3]; rows],
+            way: vec![[Quad::default(); 3]; rows],
             count: layers.iter().flatten().map(|pair| pair.blocks.len()).sum(),
         };
         for pairs in chunks() {
@@ -131,11 +140,14 @@ impl<S: Side> Group<S> {
         for batch in &mut self.batches {
             batch.fill(numbers.bodies);
         }
-        for ((places, side), own) in self.places.iter().zip(&mut self.sides).zip(&mut self.impulses) {
+        for ((places, row), own) in self.places.iter().zip(&mut self.rows).zip(&mut self.impulses) {
             for (lane, place) in places.iter().enumerate() {
                 let Some(k) = *place else { continue };
                 let spare = numbers.spares.get(k).copied().unwrap_or(f64::INFINITY);
-                side.put(lane, &numbers.blocks[k], numbers.targets[k], spare);
+                row.side.put(lane, &numbers.blocks[k]);
+                let Asked { scale, target, spare: room } = &mut row.asked;
+                scale.0[lane] = numbers.blocks[k].scale;
+                (target.0[lane], room.0[lane]) = (numbers.targets[k], spare);
                 for (quad, impulse) in own.iter_mut().zip(numbers.impulses[k]) {
                     quad.0[lane] = impulse;
                 }
@@ -160,8 +172,8 @@ impl<S: Side> Group<S> {
             let mut ends = batch.load::<D>(velocities);
             for m in 0..batch.rows.len() {
                 let k = if order == Order::Forth { batch.rows.start + m } else { batch.rows.end - 1 - m };
-                let (side, own) = (&self.sides[k], load::<D>(&self.impulses[k]));
-                let wanted = side.relaxed(&side.rates(&ends), &own);
+                let (Row { side, asked }, own) = (&self.rows[k], load::<D>(&self.impulses[k]));
+                let wanted = side.relaxed(asked, &side.rates(&ends), &own);
                 batch.push(&mut ends, &side.pushes(&minus(&wanted, &own)));
                 self.impulses[k] = store(&wanted);
             }
@@ -176,14 +188,14 @@ impl<S: Side> Group<S> {
         for batch in &self.batches {
             let ends = batch.load::<D>(velocities);
             for k in batch.rows.start..batch.rows.end {
-                let side = &self.sides[k];
+                let Row { side, asked } = &self.rows[k];
                 let rates = side.rates(&ends);
-                let off = side.natural_map(&rates, &load(&self.impulses[k]));
-                let off = D::if_greater(D::load(side.scale()), zero, off, zero);
+                let off = side.natural_map(asked, &rates, &load(&self.impulses[k]));
+                let off = D::if_greater(D::load(&asked.scale), zero, off, zero);
                 most = most.max(off);
                 sum = sum + off * off;
-                let below = D::load(side.target()) - rates[0];
-                lacks = D::if_greater(below, D::load(side.spare()), D::splat(1.0), lacks);
+                let below = D::load(&asked.target) - rates[0];
+                lacks = D::if_greater(below, D::load(&asked.spare), D::splat(1.0), lacks);
             }
         }
         Left { most: most.max_element(), sum: total(sum), has_room: lacks.max_element() == 0.0 }
@@ -203,10 +215,10 @@ impl<S: Side> Group<S> {
     #[inline(always)]
     pub(super) fn changed<D: Doubles>(&mut self) -> f64 {
         let mut sum = D::splat(0.0);
-        for k in 0..self.sides.len() {
+        for k in 0..self.rows.len() {
             let change = minus(&load::<D>(&self.impulses[k]), &load(&self.begun[k]));
             let [n, t, u] = change;
-            sum = sum + D::load(self.sides[k].scale()) * (n * n + t * t + u * u);
+            sum = sum + D::load(&self.rows[k].asked.scale) * (n * n + t * t + u * u);
             self.begun[k] = store(&change);
         }
         total(sum)
@@ -219,7 +231,7 @@ impl<S: Side> Group<S> {
         for batch in &self.batches {
             let mut ends = batch.load::<D>(velocities);
             for k in batch.rows.start..batch.rows.end {
-                let (side, own) = (&self.sides[k], load::<D>(&self.impulses[k]));
+                let (Row { side, .. }, own) = (&self.rows[k], load::<D>(&self.impulses[k]));
                 let [n, t, u] = load::<D>(&self.way[k]);
                 let along = [n * part, t * part, u * part];
                 let further = side.projected(&plus(&own, &along));

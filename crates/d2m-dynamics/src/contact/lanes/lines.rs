@@ -4,72 +4,37 @@ use super::super::block::Block;
 use super::super::law::Law;
 use super::batch::{Ends, Pushes};
 use super::cones::{put, vectors};
-use super::group::Side;
+use super::group::{Asked, Side};
 use d2m_lanes::{Doubles, Quad};
 
-const ZERO: Quad = Quad([0.0; 4]);
-
 /// As [`Block`], lane by lane.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Lines {
     direction: [Quad; 3],
     turns: [[Quad; 3]; 2],
-    scale: Quad,
     /// What makes an impulse of a rate, by what the row yields.
     mass: Quad,
     lo: Quad,
     hi: Quad,
     softness: Quad,
-    target: Quad,
-    spare: Quad,
 }
 
 impl Side for Lines {
-    const EMPTY: Self = Self {
-        direction: [ZERO; 3],
-        turns: [[ZERO; 3]; 2],
-        scale: ZERO,
-        mass: ZERO,
-        lo: ZERO,
-        hi: ZERO,
-        softness: ZERO,
-        target: ZERO,
-        spare: ZERO,
-    };
-
-    fn put(&mut self, lane: usize, block: &Block, target: f64, spare: f64) {
+    fn put(&mut self, lane: usize, block: &Block) {
         let Law::Range { lo, hi, softness } = block.law else { return };
         put(&mut self.direction, lane, block.directions[0]);
         for (turns, vector) in self.turns.iter_mut().zip(block.arms) {
             put(turns, lane, vector);
         }
         let numbers = [
-            (&mut self.scale, block.scale),
             (&mut self.mass, 1.0 / (1.0 / block.mass + softness)),
             (&mut self.lo, lo),
             (&mut self.hi, hi),
             (&mut self.softness, softness),
-            (&mut self.target, target),
-            (&mut self.spare, spare),
         ];
         for (quad, value) in numbers {
             quad.0[lane] = value;
         }
-    }
-
-    #[inline(always)]
-    fn scale(&self) -> &Quad {
-        &self.scale
-    }
-
-    #[inline(always)]
-    fn target(&self) -> &Quad {
-        &self.target
-    }
-
-    #[inline(always)]
-    fn spare(&self) -> &Quad {
-        &self.spare
     }
 
     #[inline(always)]
@@ -81,8 +46,8 @@ impl Side for Lines {
     }
 
     #[inline(always)]
-    fn relaxed<D: Doubles>(&self, rates: &[D; 3], own: &[D; 3]) -> [D; 3] {
-        let above = rates[0] - D::load(&self.target) + D::load(&self.softness) * own[0];
+    fn relaxed<D: Doubles>(&self, asked: &Asked, rates: &[D; 3], own: &[D; 3]) -> [D; 3] {
+        let above = rates[0] - D::load(&asked.target) + D::load(&self.softness) * own[0];
         self.projected(&[own[0] - above * D::load(&self.mass), D::splat(0.0), D::splat(0.0)])
     }
 
@@ -93,9 +58,9 @@ impl Side for Lines {
     }
 
     #[inline(always)]
-    fn natural_map<D: Doubles>(&self, rates: &[D; 3], own: &[D; 3]) -> D {
-        let scale = D::load(&self.scale);
-        let above = rates[0] - D::load(&self.target) + D::load(&self.softness) * own[0];
+    fn natural_map<D: Doubles>(&self, asked: &Asked, rates: &[D; 3], own: &[D; 3]) -> D {
+        let scale = D::load(&asked.scale);
+        let above = rates[0] - D::load(&asked.target) + D::load(&self.softness) * own[0];
         let nearest = self.projected(&[own[0] - above / scale, D::splat(0.0), D::splat(0.0)]);
         (own[0] - nearest[0]).abs() * scale
     }
