@@ -44,6 +44,26 @@ impl<'v> Fields<'v> {
         self.get(key).ok_or_else(|| Failure::at(&self.place, format!("key {key:?} is missing")))
     }
 
+    pub(crate) fn list(&self, key: &str) -> Result<Option<&'v Vec<Value>>, Failure> {
+        let Some(value) = self.get(key) else { return Ok(None) };
+        value
+            .as_array()
+            .map(Some)
+            .ok_or_else(|| self.fault(key, format!("{} should be a list", short(value))))
+    }
+
+    /// The object under a key, with these keys of its own.
+    pub(crate) fn object(&self, key: &str, known: &[&str]) -> Result<Option<Self>, Failure> {
+        let Some(value) = self.get(key) else { return Ok(None) };
+        Self::new(format!("{}, {key}", self.place), value, known).map(Some)
+    }
+
+    pub(crate) fn flag(&self, key: &str) -> Result<Option<bool>, Failure> {
+        let Some(value) = self.get(key) else { return Ok(None) };
+        let fault = || self.fault(key, format!("{} should be true or false", short(value)));
+        value.as_bool().map(Some).ok_or_else(fault)
+    }
+
     pub(crate) fn text(&self, key: &str) -> Result<Option<&'v str>, Failure> {
         let Some(value) = self.get(key) else { return Ok(None) };
         value.as_str().map(Some).ok_or_else(|| self.fault(key, format!("{} should be a text", short(value))))

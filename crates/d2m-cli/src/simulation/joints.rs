@@ -1,6 +1,6 @@
 //! Joints of scene files.
 
-use super::fields::{Fields, short};
+use super::fields::Fields;
 use crate::failure::Failure;
 use d2m_dynamics::{BodyId, Joint, JointKind, Motor, MotorTarget, Simulation, Spring};
 use serde_json::Value;
@@ -15,10 +15,7 @@ pub(crate) fn joints(
     ids: &[BodyId],
     simulation: &mut Simulation,
 ) -> Result<(), Failure> {
-    let Some(value) = scene.get("joints") else { return Ok(()) };
-    let Some(list) = value.as_array() else {
-        return Err(scene.fault("joints", format!("{} should be a list", short(value))));
-    };
+    let Some(list) = scene.list("joints")? else { return Ok(()) };
     for (index, value) in list.iter().enumerate() {
         let place = format!("{}, joints, entry {index}", scene.place());
         let fields = Fields::new(place, value, KEYS)?;
@@ -64,25 +61,20 @@ fn joint(fields: &Fields<'_>, names: &[String], ids: &[BodyId]) -> Result<Joint,
     if let Some(limits) = fields.numbers::<2>("limits")? {
         joint = joint.with_limits(limits);
     }
-    if let Some(value) = fields.get("motor") {
-        joint = joint.with_motor(motor(fields, value)?);
+    if let Some(fields) = fields.object("motor", &["velocity", "position", "max", "stiffness", "damping"])? {
+        joint = joint.with_motor(motor(&fields)?);
     }
-    if let Some(value) = fields.get("spring") {
-        let place = format!("{}, spring", fields.place());
-        let spring = Fields::new(place, value, &["stiffness", "damping", "rest"])?;
+    if let Some(spring) = fields.object("spring", &["stiffness", "damping", "rest"])? {
         let number = |key: &str| -> Result<f64, Failure> { Ok(spring.number(key)?.unwrap_or(0.0)) };
         joint = joint.with_spring(Spring::new(number("stiffness")?, number("damping")?, number("rest")?));
     }
-    if let Some(value) = fields.get("collide") {
-        let fault = || fields.fault("collide", format!("{} should be true or false", short(value)));
-        joint = joint.with_collide(value.as_bool().ok_or_else(fault)?);
+    if let Some(collide) = fields.flag("collide")? {
+        joint = joint.with_collide(collide);
     }
     Ok(joint.with_friction(fields.number("friction")?.unwrap_or(0.0)))
 }
 
-fn motor(joint: &Fields<'_>, value: &Value) -> Result<Motor, Failure> {
-    let place = format!("{}, motor", joint.place());
-    let fields = Fields::new(place, value, &["velocity", "position", "max", "stiffness", "damping"])?;
+fn motor(fields: &Fields<'_>) -> Result<Motor, Failure> {
     let target = match (fields.number("velocity")?, fields.number("position")?) {
         (Some(rate), None) => MotorTarget::Velocity(rate),
         (None, Some(place)) => MotorTarget::Position(place),

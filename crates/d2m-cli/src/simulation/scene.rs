@@ -76,10 +76,8 @@ pub(crate) fn read_scene(path: &Path) -> Result<SimulatedScene, Failure> {
     parse_start(scene.get("start")).map_err(|reason| scene.fault("start", reason))?;
     let Settings { options, end, threads } = settings(&scene)?;
     let mut simulation = Simulation::new(options).map_err(|error| Failure::at(path.display(), error))?;
-    let list = scene.required("bodies")?;
-    let Some(list) = list.as_array() else {
-        return Err(scene.fault("bodies", format!("{} should be a list", short(list))));
-    };
+    scene.required("bodies")?;
+    let list = scene.list("bodies")?.map_or(&[][..], Vec::as_slice);
     if list.is_empty() {
         return Err(scene.fault("bodies", "the list is empty"));
     }
@@ -139,9 +137,8 @@ fn settings(scene: &Fields<'_>) -> Result<Settings, Failure> {
             || fields.fault("max_events", format!("{} should be a whole number below 2^32", short(value)));
         options = options.with_max_events(count.ok_or_else(fault)?);
     }
-    if let Some(value) = fields.get("sleep") {
-        let fault = || fields.fault("sleep", format!("{} should be true or false", short(value)));
-        options = options.with_sleeping(value.as_bool().ok_or_else(fault)?);
+    if let Some(sleeps) = fields.flag("sleep")? {
+        options = options.with_sleeping(sleeps);
     }
     let threads = match fields.get("threads") {
         None => None,
@@ -172,10 +169,7 @@ fn ignore(
     ids: &[BodyId],
     simulation: &mut Simulation,
 ) -> Result<(), Failure> {
-    let Some(value) = scene.get("ignore") else { return Ok(()) };
-    let Some(list) = value.as_array() else {
-        return Err(scene.fault("ignore", format!("{} should be a list", short(value))));
-    };
+    let Some(list) = scene.list("ignore")? else { return Ok(()) };
     let names = Names::new(bodies);
     let members = |group: &str| -> Vec<BodyId> {
         let is_member = |k: &usize| bodies[*k].group.as_deref() == Some(group);
@@ -202,10 +196,7 @@ fn pairs(
     ids: &[BodyId],
     simulation: &mut Simulation,
 ) -> Result<(), Failure> {
-    let Some(value) = scene.get("pairs") else { return Ok(()) };
-    let Some(list) = value.as_array() else {
-        return Err(scene.fault("pairs", format!("{} should be a list", short(value))));
-    };
+    let Some(list) = scene.list("pairs")? else { return Ok(()) };
     let known: BTreeSet<&str> = names.iter().map(String::as_str).collect();
     let list = list.iter().map(|value| UniqueKeys(value.clone())).collect();
     let pairs = ScenePair::parse_all(list, &known).map_err(|error| Failure::at(scene.place(), error))?;
@@ -227,8 +218,7 @@ fn pairs(
 fn describe(fields: &Fields<'_>, read: &SceneBody) -> Result<Body, Failure> {
     let mut body =
         Body::new(&read.name, Arc::clone(&read.tree)).with_solid(read.solid).with_radius(read.radius);
-    if let Some(damping) = fields.get("damping") {
-        let damping = Fields::new(format!("{}, damping", fields.place()), damping, &["linear", "angular"])?;
+    if let Some(damping) = fields.object("damping", &["linear", "angular"])? {
         let rate = |key: &str| match damping.number(key)?.unwrap_or(0.0) {
             rate if rate >= 0.0 => Ok(rate),
             rate => Err(damping.fault(key, format!("{rate:?} is negative"))),
@@ -236,13 +226,11 @@ fn describe(fields: &Fields<'_>, read: &SceneBody) -> Result<Body, Failure> {
         body.damping = Damping { linear: rate("linear")?, angular: rate("angular")? };
     }
     body.kind = kind(fields, &read.motion)?;
-    if let Some(pose) = fields.get("pose") {
-        let pose = Fields::new(format!("{}, pose", fields.place()), pose, &["x", "q"])?;
+    if let Some(pose) = fields.object("pose", &["x", "q"])? {
         body.position = pose.vector("x")?.unwrap_or_default();
         body.orientation = pose.quaternion("q")?.unwrap_or_default();
     }
-    if let Some(velocity) = fields.get("velocity") {
-        let velocity = Fields::new(format!("{}, velocity", fields.place()), velocity, &["v", "w"])?;
+    if let Some(velocity) = fields.object("velocity", &["v", "w"])? {
         body.linear_velocity = velocity.vector("v")?.unwrap_or_default();
         body.angular_velocity = velocity.vector("w")?.unwrap_or_default();
     }

@@ -24,6 +24,15 @@ pub(crate) struct Closest {
     pub(crate) direction: DVec3,
 }
 
+impl Closest {
+    /// The same with the bodies exchanged.
+    #[inline(always)]
+    fn swapped(self) -> Self {
+        let ([p, q], [on_p, on_q]) = (self.points, self.places);
+        Self { points: [q, p], places: [on_q, on_p], direction: -self.direction, ..self }
+    }
+}
+
 /// Square of the least sine of the angle between two edges whose cross product is a direction. The product errs by
 /// 2·2⁻⁵³|e||d|, so its angle by 2·2⁻⁵³ over the sine. What it has along the edges is taken off ([`across`]); the rest tilts
 /// the direction by less than a per cent, about the edges, along which it then sees nothing of them but roundings. Below that
@@ -79,8 +88,12 @@ pub(crate) fn closest<D: Doubles>(a: &[DVec3; 3], b: &[DVec3; 3]) -> Closest {
     let mut best = edge_edge((a, i), (b, j));
     let faces = [(a, face_normal(a)), (b, face_normal(b))];
     for corner in 0..3 {
-        corner_face(&mut best, (a, corner), faces[1], false);
-        corner_face(&mut best, (b, corner), faces[0], true);
+        if let Some(of_a) = corner_face((a, corner), faces[1], best.distance_squared) {
+            best = of_a;
+        }
+        if let Some(of_b) = corner_face((b, corner), faces[0], best.distance_squared) {
+            best = of_b.swapped();
+        }
     }
     best
 }
@@ -175,42 +188,29 @@ fn edge_edge((a, i): (&[DVec3; 3], usize), (b, j): (&[DVec3; 3], usize)) -> Clos
     Closest { distance_squared, points: [p, q], places, direction }
 }
 
+/// A corner and a face of the other body, where their squared distance is below `most`.
 #[inline(always)]
 fn corner_face(
-    best: &mut Closest,
     (corners, i): (&[DVec3; 3], usize),
     (face, normal): (&[DVec3; 3], DVec3),
-    flipped: bool,
-) {
+    most: f64,
+) -> Option<Closest> {
     let p = corners[i];
     let nn = normal.length_squared();
     let height = (p - face[0]).dot(normal);
-    if nn.is_nan() || nn <= 0.0 || height * height >= best.distance_squared * nn {
-        return;
+    if nn.is_nan() || nn <= 0.0 || height * height >= most * nn {
+        return None;
     }
     for k in 0..3 {
         let edge = face[(k + 1) % 3] - face[k];
         if edge.cross(p - face[k]).dot(normal) < 0.0 {
-            return;
+            return None;
         }
     }
-    let foot = p - normal * (height / nn);
-    let distance_squared = height * height / nn;
-    // Towards the corner from the face.
-    let out = if height < 0.0 { -normal } else { normal };
-    *best = if flipped {
-        Closest {
-            distance_squared,
-            points: [foot, p],
-            places: [Place::Face, Place::Vertex(i)],
-            direction: out,
-        }
-    } else {
-        Closest {
-            distance_squared,
-            points: [p, foot],
-            places: [Place::Vertex(i), Place::Face],
-            direction: -out,
-        }
-    };
+    Some(Closest {
+        distance_squared: height * height / nn,
+        points: [p, p - normal * (height / nn)],
+        places: [Place::Vertex(i), Place::Face],
+        direction: if height < 0.0 { normal } else { -normal },
+    })
 }
