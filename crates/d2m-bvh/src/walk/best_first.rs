@@ -1,6 +1,6 @@
 //! Best first inside one sub-window.
 
-use super::effort::{self, BATCH, Level, MEMORY_CHECK, ON_ITS_WAY, Passing};
+use super::effort::{self, BATCH, MEMORY_CHECK, ON_ITS_WAY, Passing};
 use super::expansion::{KEY_SCALE, NodePairExpander};
 use super::parting::Parting;
 use super::queue::{Bucket, Item};
@@ -8,7 +8,7 @@ use super::state::{Outcome, Search, State, Step, SubWindow, triangle_count};
 use crate::Budget;
 use crate::gap::widest_gap::widest_normal;
 use crate::pair::boxes::node_scale::NodeScale;
-use crate::pair::boxes::node_test::{Expanded, Further, NodeFrame};
+use crate::pair::boxes::node_test::{Expanded, NodeFrame};
 use crate::pair::motion::frame::{Frame, RelativeMotion};
 use crate::pair::motion::units::sum_down;
 use crate::pair::scene::MovingScene;
@@ -60,7 +60,10 @@ impl<'s> Search<'s> {
         }
         let mut batch = core::mem::replace(&mut self.scratch.batch, Bucket::EMPTY);
         let (mut outcome, mut batches) = (None, 0u32);
-        let parting = state.parting.map(|witness| Parting::new::<L>(self.scene, &state, &witness));
+        let parting = self
+            .limits
+            .parting
+            .map(|triangles| Parting::new::<L>(self.scene, &state, &Witness::new(self.scene, triangles)));
         let parting =
             parting.as_ref().map(|parting| parting.over_span::<L>(self.scene, &state.expander.scales));
         let mut patience = Patience::new(self.scratch.counts.triangle_looks, self.limits.patience);
@@ -75,7 +78,7 @@ impl<'s> Search<'s> {
                 break;
             }
             self.scratch.counts.frames += 1;
-            if batches == 1 || least > Level::of(state.parting.as_ref()).fresh_until(state.frame_key) {
+            if batches == 1 || least > effort::fresh_until(state.frame_key) {
                 state.renew_frames::<L>(least, effort::boxes_may_pass(batches));
             }
             if patience.is_due(batches, self.scratch.counts.triangle_looks) {
@@ -117,8 +120,6 @@ impl<'s> Search<'s> {
             frame_key: 0,
             found: None,
             behind: BackwardCertificate::default(),
-            parting: self.limits.parting.map(|triangles| Witness::new(scene, triangles)),
-            ahead: None,
         }
     }
 
@@ -241,11 +242,8 @@ impl State<'_> {
         self.frame_key = key;
         if passing == Passing::Tested {
             for frame in &mut self.node_frames {
-                frame.further = Further::Passing(left);
+                frame.passing = Some(left);
             }
-        }
-        if let Some(witness) = self.parting {
-            self.turn_parting(&witness);
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! A search begins with what ordinary queries need and reaches for stronger, dearer means only where those have not sufficed.
 //! Nothing here proves anything: any other numbers give answers as right, only later. They were found by measurement
-//! (`docs/experiments.md`).
+//! (`docs/experiments.md`; "What each mechanism is worth" there).
 //!
 //! | mechanism | starts | gives up, or waits | where it is |
 //! |---|---|---|---|
@@ -11,14 +11,14 @@
 //! | bounds of third order | after 192 tests of the search, or 16 of the pair | – | [`separating_axis`] |
 //! | directions that turn with the bodies | after 1024 tests of the search, or 24 of the pair | – | `triangle_pair/turning` |
 //! | a pair followed at once | when it is handed out | its time grew by 1/16, or 64 steps when out of turn | `pairs` |
-//! | a fresh frame | the time grew by 1/128, or by 1/16 when the level is grazed | – | `best_first` |
+//! | a fresh frame | the time grew by 1/128 | – | `best_first` |
 //! | swept volumes, then screws | work of 256 and 1/8 test a triangle; 256 and one a triangle when 1/16 of the sub-window is done | after a success at a quarter more, else at eight times the work | `skip` |
 //! | swept volumes that meet, by boxes | before bodies are measured | a pair for 32 triangles | `skip` |
 //! | pairs of parts along a screw | – | a quarter of the work, and three for each triangle that may be near the other body | `skip` |
 //! | planes between crowds | 4096 pairs wait, or 1024 batches | twice as many, and as much other work as it took | `crowd` |
 //! | spans of time, divided | 64 sub-windows | 256 pairs in a span | `time_split` |
 //! | several threads | 1024 node tests | each round 4096 tests a thread | `parallel` |
-//! | all but the first five, when the level is grazed | 64 times later | – | [`Level::patience`] |
+//! | swept volumes, screws and crowds, when the level is grazed | 64 times later | – | [`patience`] |
 //!
 //! What one mechanism does within itself stands with it: which directions a test tries ([`separating_axis`]), which planes part crowds (`crowd`), how
 //! long spans of any motion are (`general_motion/span_length`), of contact (`staying_walk`), and where clearances are sampled (`clearance`). Tests
@@ -42,44 +42,9 @@ pub(crate) const MEMORY_CHECK: u32 = 128;
 /// bounds only begin earlier.
 const FRESH: u32 = 128;
 
-/// The same for a search whose level is close to the least distance: it goes away from the time at which the bodies are closest,
-/// so that times grow by many powers of two, and each frame comes with a line between the closest triangles.
-const GRAZING_FRESH: u32 = 16;
-
-/// How the distance that a search proves compares with the least one.
-#[derive(Clone, Copy)]
-pub(crate) enum Level {
-    /// Nothing is known of that.
-    Usual,
-    /// They are close.
-    Grazed,
-}
-
-impl Level {
-    /// Grazed where triangles are known whose line parts most pairs.
-    pub(crate) const fn of<T>(parting: Option<&T>) -> Self {
-        match parting {
-            None => Self::Usual,
-            Some(_) => Self::Grazed,
-        }
-    }
-
-    /// The key above which a frame at this key is renewed.
-    pub(crate) const fn fresh_until(self, key: u32) -> u32 {
-        let part = match self {
-            Self::Usual => FRESH,
-            Self::Grazed => GRAZING_FRESH,
-        };
-        key + key / part
-    }
-
-    /// The factor of all that a search does before it examines swept volumes and crowds.
-    pub(crate) const fn patience(self) -> u64 {
-        match self {
-            Self::Usual => 1,
-            Self::Grazed => GRAZING_PATIENCE,
-        }
-    }
+/// The key above which a frame at this key is renewed.
+pub(crate) const fn fresh_until(key: u32) -> u32 {
+    key + key / FRESH
 }
 
 /// Whether boxes are tested for passing each other.
@@ -137,9 +102,14 @@ pub(crate) const fn followed_until(key: u32) -> u32 {
     key + key / FOLLOWED + FOLLOWED_KEYS
 }
 
-/// How much longer a search whose level is close to the least distance goes on before it examines swept volumes and crowds, which
-/// hardly ever prove anything then.
+/// How much longer a search goes on before it examines swept volumes and crowds if its level is close to the least distance: they hardly ever
+/// prove anything then.
 const GRAZING_PATIENCE: u64 = 64;
+
+/// The factor of all that a search does before that; `grazed`: triangles whose line parts most pairs.
+pub(crate) const fn patience(grazed: Option<[u32; 2]>) -> u64 {
+    if grazed.is_some() { GRAZING_PATIENCE } else { 1 }
+}
 
 /// Node tests, besides one for each [`TRIANGLES_A_TEST`] triangles, before swept volumes are compared for the first time:
 /// ordinary queries end before that, or are well on their way.

@@ -97,20 +97,6 @@ impl Search<'_> {
                 return;
             }
         }
-        if let Some(ahead) = &state.ahead {
-            self.scratch.counts.triangle_looks += 1;
-            let span = (state.limit_offset - ahead.reversed.offset).next_up();
-            if apart_since::<L::Doubles>(ahead, [&a, &b], &self.scene.pair, span) {
-                #[cfg(feature = "audit")]
-                state.conclude_pair(
-                    self.scene,
-                    Place::Backward,
-                    [ahead.reversed.offset, state.limit_offset],
-                    triangles,
-                );
-                return;
-            }
-        }
         let start = state.motion.start;
         // Not copied: most pairs end with the frame of all.
         let mut own;

@@ -7,10 +7,8 @@
 use super::expansion::DirectedSpan;
 use super::state::State;
 use crate::pair::boxes::node_scale::NodeScale;
-use crate::pair::boxes::node_test::Further;
 use crate::pair::boxes::whole_span::{PlacedPose, SpanDirection, SpanFrame};
 use crate::pair::scene::MovingScene;
-use crate::pair::triangles::separating_axis::BackwardCertificate;
 use crate::pair::witness::Witness;
 use d2m_lanes::{F64x4, Lanes};
 
@@ -44,19 +42,5 @@ impl Parting {
         let error = scene.far_frame_error();
         let one = |k: usize| SpanFrame::<L>::new([&start[k], &middle[k], &end[k]], &scales[k], error);
         DirectedSpan { frames: [one(0), one(1)], directions: self.directions }
-    }
-}
-
-impl State<'_> {
-    /// The line at the time of the frame, by the axes of both bodies.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn turn_parting(&mut self, witness: &Witness) {
-        let by_b = witness.line(&self.frame);
-        let by_a = self.frame.rotation.transposed::<F64x4>().transform(by_b).normalize_or_zero();
-        let [of_a, of_b] = &mut self.node_frames;
-        of_a.further = Further::Along(by_a.as_vec3().to_array());
-        of_b.further = Further::Along(by_b.as_vec3().to_array());
-        self.ahead = Some(BackwardCertificate { reversed: self.frame, direction: by_b });
     }
 }

@@ -2,7 +2,7 @@
 
 use super::tests::{EXPANDED, moving, soup};
 use crate::pair::boxes::entry_time::entry_times;
-use crate::pair::boxes::node_test::{Further, NodeFrame, Placed};
+use crate::pair::boxes::node_test::{NodeFrame, Placed};
 use crate::pair::scene::MovingScene;
 use crate::pair::triangles::separating_axis::place_a;
 use crate::{MeshTree, QueryOptions, TriMesh, Window};
@@ -48,7 +48,7 @@ impl Boxes<'_> {
             let box_of = NodeBox::new(single.nodes(), index as u32);
             let placed = Placed::new::<Portable>(&node_frame, &scale, box_of, &wide.nodes()[node]);
             let times = entry_times::<Portable>(&wide.nodes()[node], &placed, &scale).store();
-            node_frame.further = Further::Passing(left);
+            node_frame.passing = Some(left);
             times
         };
         Apart { usual: times(), passing: times(), left, unit }

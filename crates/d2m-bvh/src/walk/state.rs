@@ -1,7 +1,7 @@
 //! What a search knows: its limits, what it has found, where it is in a sub-window.
 
 use super::counts::SearchCounts;
-use super::effort::{self, Level};
+use super::effort;
 use super::expansion::{KeyRange, NodePairExpander};
 use super::scratch::Scratch;
 use crate::pair::boxes::node_scale::NodeScale;
@@ -10,7 +10,6 @@ use crate::pair::motion::frame::{Frame, RelativeMotion};
 use crate::pair::motion::units::sum_down;
 use crate::pair::scene::MovingScene;
 use crate::pair::triangles::separating_axis::BackwardCertificate;
-use crate::pair::witness::Witness;
 use crate::{Budget, Mode, QueryOptions};
 use d2m_lanes::InstructionSet;
 use d2m_mesh::Stop;
@@ -126,10 +125,6 @@ pub(crate) struct State<'a> {
     pub(crate) found: Option<Found>,
     /// The time of what is found; before something is found, of no meaning.
     pub(crate) behind: BackwardCertificate,
-    /// Triangles whose line is tried of every pair.
-    pub(crate) parting: Option<Witness>,
-    /// That line at the time of the frame: a certificate forwards, so nothing is reversed.
-    pub(crate) ahead: Option<BackwardCertificate>,
 }
 
 impl<'s> Search<'s> {
@@ -139,7 +134,7 @@ impl<'s> Search<'s> {
         scratch.last_tested = [0, 0];
         // What an earlier query left belongs to other motions.
         scratch.found_in = None;
-        let patience = Level::of(options.grazing.as_ref()).patience();
+        let patience = effort::patience(options.grazing);
         let limits = Limits {
             mode: options.mode,
             most_tests: budget.node_tests.unwrap_or(u64::MAX).min(Budget::HARD_NODE_TESTS),

@@ -1,8 +1,8 @@
 //! Until when are a placed box and the eight boxes of a wide node apart?
 
-use super::gap_and_rate::{GapAndRate, RateBounds, along};
+use super::gap_and_rate::{GapAndRate, RateBounds};
 use super::node_scale::NodeScale;
-use super::node_test::{Further, Placed};
+use super::node_test::Placed;
 use super::passing::PassingBoxes;
 use d2m_lanes::three::{dot, splat};
 use d2m_lanes::{Elementwise, Lanes, Two};
@@ -36,15 +36,12 @@ pub(crate) fn entry_times<L: Lanes>(wide: &WideNode, placed: &Placed, scale: &No
     let gap = (pair.square - pair.line_reach) * inverse - L::splat(placed.boxed.margin);
     let closing = L::splat(placed.least).max(spread - dot(&rate, &pair.line) * inverse);
     let best = GapAndRate { gap, closing }.or(best);
-    let rates = RateBounds { spread, least: L::splat(placed.least) };
-    match placed.further {
-        Further::None => best.lasts_for(scale),
-        Further::Along(direction) => {
-            along(wide, placed, splat(&direction), &rate, rates).or(best).lasts_for(scale)
-        }
-        Further::Passing(left) => {
+    let times = best.lasts_for(scale);
+    match placed.passing {
+        None => times,
+        Some(left) => {
             let passing = PassingBoxes { wide, placed, line: pair.line, velocity: rate, left };
-            passing.apart_until(best.lasts_for(scale), scale)
+            passing.apart_until(times, scale)
         }
     }
 }

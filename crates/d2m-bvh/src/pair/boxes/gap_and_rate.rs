@@ -1,12 +1,10 @@
 //! Gaps of boxes along a direction, how fast they close, and how long they last for it.
 
 use super::node_scale::NodeScale;
-use super::node_test::Placed;
-use super::whole_span::Boxes;
-use d2m_lanes::three::{dot, load, minus, splat};
+use d2m_lanes::three::dot;
 use d2m_lanes::{Elementwise, Lanes};
 use d2m_mesh::margin::UNIT_F32;
-use d2m_mesh::node::{Axis, WideNode};
+use d2m_mesh::node::Axis;
 
 /// What covers the roundings of the entry time and of unit axes.
 const ENTRY_FACTOR: f32 = 1.0 - 32.0 * UNIT_F32 as f32;
@@ -60,31 +58,4 @@ impl<L: Lanes> GapAndRate<L> {
         let root = (self.closing * self.closing + L::splat(scale.acceleration) * twice).sqrt();
         twice / (self.closing + root) * L::splat(ENTRY_FACTOR)
     }
-}
-
-/// Along a direction by the wide body's axes; it may be longer than one by ten roundings.
-#[inline(always)]
-pub(super) fn along<L: Lanes>(
-    wide: &WideNode,
-    placed: &Placed,
-    n: [L; 3],
-    velocity: &[L; 3],
-    rates: RateBounds<L>,
-) -> GapAndRate<L> {
-    let (at, boxed) = (splat::<L, 4>(&placed.boxed.center), &placed.boxed);
-    let center = load::<L>(&wide.center);
-    let to = minus(&at, &center);
-    let of_lanes = Boxes {
-        half: load::<L>(&wide.half_extent),
-        slabs: load::<L>(&wide.slabs),
-        axes: wide.wide_axes::<L>(),
-    };
-    let of_single = Boxes {
-        half: splat(&boxed.half),
-        slabs: splat(&boxed.slabs),
-        axes: [splat(&boxed.axes[0]), splat(&boxed.axes[1]), splat(&boxed.axes[2])],
-    };
-    let between = dot(&to, &n);
-    let reach = of_lanes.reach(&n, between) + of_single.reach(&n, between) + L::splat(boxed.margin);
-    GapAndRate::new(&Axis { direction: n, between, reach }, velocity, rates)
 }

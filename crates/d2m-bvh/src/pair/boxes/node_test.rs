@@ -31,19 +31,8 @@ pub(crate) struct NodeFrame {
     least: f32,
     /// The error of speeds that does not depend on the boxes.
     speed_floor: f32,
-    /// What pairs are tested by besides their own directions.
-    pub(crate) further: Further,
-}
-
-/// What pairs of boxes are tested by besides their own directions.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) enum Further {
-    #[default]
-    None,
-    /// This direction, by the wide body's axes.
-    Along([f32; 3]),
-    /// Whether they pass each other: no time after this one matters, counted from the frame.
-    Passing(f32),
+    /// Pairs are also tested for passing each other: no time after this one matters then, counted from the frame.
+    pub(crate) passing: Option<f32>,
 }
 
 /// The body whose nodes are expanded against boxes of the other one.
@@ -91,7 +80,7 @@ impl NodeFrame {
             omega_wide: omega_wide.narrow(),
             least: scale.acceleration * left * HINT + scale.speed_floor,
             speed_floor: scale.speed_floor,
-            further: Further::None,
+            passing: None,
         }
     }
 }
@@ -112,7 +101,7 @@ pub(crate) struct Placed {
     /// Of a sphere about its center that holds it.
     pub(super) radius: f32,
     /// What it is tested by besides the boxes' own directions.
-    pub(super) further: Further,
+    pub(super) passing: Option<f32>,
 }
 
 impl Placed {
@@ -155,7 +144,7 @@ impl Placed {
                 + frame.speed_floor,
             least: frame.least,
             radius,
-            further: frame.further,
+            passing: frame.passing,
             velocity,
         }
     }

@@ -134,10 +134,10 @@ fn carried<L: Lanes>(start: &Matrix, end: &Matrix) -> Carried<L::Two> {
 }
 
 /// A box, or the boxes of a node, by the axes of their body: they are the same at all times.
-pub(super) struct Boxes<T> {
-    pub(super) half: [T; 3],
-    pub(super) slabs: [T; 3],
-    pub(super) axes: [[T; 3]; 3],
+struct Boxes<T> {
+    half: [T; 3],
+    slabs: [T; 3],
+    axes: [[T; 3]; 3],
 }
 
 impl<T: Bytes> Boxes<T> {
