@@ -328,6 +328,32 @@ fn what_rounding_decides_is_not_called_crushed() {
     assert!(time > 1.0 - 1e-9 && time <= 1.0, "{time}");
 }
 
+/// A press comes down with its rim on the top of a stone, which could turn out from under it: nothing is crushed. With what lies well below the
+/// stone's top it does crush it.
+#[test]
+fn what_could_turn_out_at_a_rim_is_not_crushed() {
+    for (over, is_crushed) in [(0.0, false), (1e-6, false), (0.3, true)] {
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        simulation.add(&floor(1.0).with_friction(0.3)).unwrap();
+        let stone = Body::new("stone", tree("icosphere?triangles=80&scale=0.3"));
+        simulation.add(&stone.with_position(DVec3::Y * 0.3)).unwrap();
+        let from = DVec3::new(1.0 - over, 1.0, 0.0);
+        simulation.add(&pushed("press", "box?x=1&y=0.2&z=1", from, DVec3::Y * -0.4)).unwrap();
+        let error = loop {
+            match simulation.step() {
+                Ok(_) => assert!(simulation.time() < 1.5),
+                Err(error) => break error,
+            }
+        };
+        let is_right = match &error {
+            StepError::Crushed { crushed, .. } => is_crushed && crushed == "stone",
+            StepError::Cornered { cornered, .. } => !is_crushed && cornered == "stone",
+            _ => false,
+        };
+        assert!(is_right, "{over}: {error}");
+    }
+}
+
 /// Two plates close in on spheres in one line, which could roll out of it: the way out does not show in the velocities at the start.
 #[test]
 fn spheres_in_a_row_are_not_crushed() {

@@ -21,8 +21,24 @@
 //! bend = V_a²/ρ_a + V_b²/ρ_b + 4 n (V_a + V_b) + n² d,     n = max(V_a/ρ_a, V_b/ρ_b), across edges TURNING times that
 //! ```
 //!
-//! What is proven is proven of the features that were measured: that none of them slides off the other one in that time, in which a point goes
-//! 2⁻¹³ of an arm at most, is taken for granted.
+//! What is proven is proven of the features that were measured. So only contacts count whose closest points cannot slip off them meanwhile: those
+//! that may slide by s, where
+//!
+//! ```text
+//! s ≥ 2 (V_a + V_b) τ + 2 n d τ
+//! ```
+//!
+//! and n τ is at most 1/32. Seen from one body a closest point of the other one moves no faster than (V_a + V_b) (1 + n τ) + n d, less than that.
+//! It cannot leave what is flat and goes on by that around the other one's: it is on the outer side of it until the bodies meet. Nor can two edges pass each other while the points where they are closest are between their ends. These points move along
+//! the edges, with directions u and w, by
+//!
+//! ```text
+//! ((r·u) − (u·w) (r·w))/(1 − (u·w)²),     (r·w) likewise
+//! ```
+//!
+//! with the vector r from what was the closest point of one to that of the other: at the start it is across both, so that its parts along them are
+//! at most 2 (V_a + V_b) τ, what the points move against each other, and what the edges turn, n τ, times d. With sin² = 1 − (u·w)² ≥ 1/4, and at
+//! least 1/5 after a turn of 1/32, it is less than ten times the sum: [`LEVER`].
 
 use super::{ContactPoint, SolverBody, System};
 use crate::velocity::Velocity;
@@ -40,6 +56,10 @@ pub(crate) const CROSSING: f64 = 0.5;
 /// The direction of a contact is off the normal that turns so by this at most, 2⁻²⁴: then it is off its distance along it by less than twice
 /// that part of it.
 pub(crate) const ASKEW: f64 = 1.0 / (1u64 << 24) as f64;
+/// How far a direction turns meanwhile, at most.
+const MOST_TURN: f64 = 1.0 / 32.0;
+/// How far the closest points of two edges that cross so slide for what the bodies move against each other, at most.
+pub(crate) const LEVER: f64 = 10.0;
 /// What closes in goes on for at most this part of the least arm over [`FAST`]², 2⁻⁷. What bends is then less than a tenth of what closes in for
 /// each contact of faces that takes part, a seventh across edges, and half of both where one of the bodies rests.
 const STEADY: f64 = 1.0 / (1u64 << 7) as f64;
@@ -47,9 +67,12 @@ const STEADY: f64 = 1.0 / (1u64 << 7) as f64;
 const ROUNDED: f64 = 1.0 / (1u64 << 46) as f64;
 
 /// Contacts, the bodies of which `place` finds in the list, without velocities but for what follows its motion.
+#[derive(Clone, Copy)]
 pub(crate) struct Squeeze<'s, P: Fn(usize) -> usize + Copy> {
     pub(crate) bodies: &'s [SolverBody],
     pub(crate) contacts: &'s [ContactPoint],
+    /// By how much the bodies of each may move against each other until its features need not be the closest ones any more.
+    pub(crate) slides: &'s [f64],
     pub(crate) place: P,
 }
 
@@ -63,12 +86,17 @@ impl<P: Fn(usize) -> usize + Copy> Squeeze<'_, P> {
 
     /// The contact that presses most of those with what follows its motion, if no motion of the others keeps the contacts apart for this time:
     /// a proof. Of the time as much counts as leaves arms and normals about as they are. None: there is such a motion, or no proof was found.
-    pub(crate) fn prove_infeasible(&self, length: f64) -> Option<&ContactPoint> {
+    pub(crate) fn prove_infeasible(&self, most: f64) -> Option<ContactPoint> {
         let fastest = self.closing();
-        let arms = self.bodies.iter().zip(self.reach()).filter(|(body, _)| body.inverse_mass > 0.0);
-        let arms = arms.map(|(_, reach)| reach).filter(|reach| *reach > 0.0);
-        let steady = STEADY * arms.fold(f64::INFINITY, f64::min) / (FAST * FAST * fastest);
-        let length = length.min(steady);
+        let length = most.min(self.steady(fastest));
+        let stays = self.stay(length, FAST * fastest);
+        if stays.contains(&false) {
+            // Of the others alone: arms, speeds and times are others then.
+            let kept = self.contacts.iter().zip(self.slides).zip(&stays).filter(|(_, stays)| **stays);
+            let (contacts, slides): (Vec<_>, Vec<_>) =
+                kept.map(|((contact, slide), _)| (*contact, *slide)).unzip();
+            return Squeeze { contacts: &contacts, slides: &slides, ..*self }.prove_infeasible(most);
+        }
         let is_driven = |body: usize| {
             let body = &self.bodies[(self.place)(body)];
             body.inverse_mass == 0.0 && body.velocity != Velocity::default()
@@ -81,7 +109,26 @@ impl<P: Fn(usize) -> usize + Copy> Squeeze<'_, P> {
             return None;
         }
         let driven = self.contacts.iter().zip(&multipliers).filter(|(c, _)| is_driven(c.a) || is_driven(c.b));
-        driven.max_by(|x, y| x.1.total_cmp(y.1)).map(|(contact, _)| contact)
+        driven.max_by(|x, y| x.1.total_cmp(y.1)).map(|(contact, _)| *contact)
+    }
+
+    /// How long arms and normals stay about as they are, if this is how fast something closes in.
+    fn steady(&self, fastest: f64) -> f64 {
+        let arms = self.bodies.iter().zip(self.reach()).filter(|(body, _)| body.inverse_mass > 0.0);
+        let arms = arms.map(|(_, reach)| reach).filter(|reach| *reach > 0.0);
+        STEADY * arms.fold(f64::INFINITY, f64::min) / (FAST * FAST * fastest)
+    }
+
+    /// Do the features of each contact stay the closest ones for this time, with speeds up to this one?
+    fn stay(&self, length: f64, speed: f64) -> Vec<bool> {
+        let speeds = self.speeds(speed);
+        let stays = |(c, slide): (&ContactPoint, &f64)| {
+            let Rates { turn, both, .. } = self.rates(c, &speeds);
+            let moved = Interval::point(2.0 * length) * (both + turn * Interval::point(c.distance));
+            let room = Interval::point(*slide - ROUNDED * size(c)) - moved;
+            room.certainly_positive() && (turn * Interval::point(length)).sup() <= MOST_TURN
+        };
+        self.contacts.iter().zip(self.slides).map(stays).collect()
     }
 
     /// The longest arm of the contacts of each body.
@@ -123,14 +170,18 @@ impl<P: Fn(usize) -> usize + Copy> Squeeze<'_, P> {
         self.bodies.iter().zip(self.reach()).map(speeds).collect()
     }
 
+    /// How fast the bodies of a contact move, and its direction turns, at most.
+    fn rates(&self, c: &ContactPoint, speeds: &[(Interval, Interval)]) -> Rates {
+        let [(va, ra), (vb, rb)] = [c.a, c.b].map(|body| speeds[(self.place)(body)]);
+        let (ta, tb) = (va / ra, vb / rb);
+        let turning = if matches!(c.feature, FeaturePair::EdgeEdge { .. }) { TURNING } else { 1.0 };
+        Rates { turn: Interval::point(turning) * ta.max(tb), both: va + vb, inward: va * ta + vb * tb }
+    }
+
     /// By how much the rate of a contact may change in a unit of time, and by how much it may be off since its normal is askew.
     fn bend(&self, c: &ContactPoint, speeds: &[(Interval, Interval)]) -> (Interval, Interval) {
-        let [(va, ra), (vb, rb)] = [c.a, c.b].map(|body| speeds[(self.place)(body)]);
-        let (ta, tb, both) = (va / ra, vb / rb, va + vb);
-        let turning = if matches!(c.feature, FeaturePair::EdgeEdge { .. }) { TURNING } else { 1.0 };
-        let turn = Interval::point(turning) * ta.max(tb);
-        let bend =
-            va * ta + vb * tb + turn * (Interval::point(4.0) * both + turn * Interval::point(c.distance));
+        let Rates { turn, both, inward } = self.rates(c, speeds);
+        let bend = inward + turn * (Interval::point(4.0) * both + turn * Interval::point(c.distance));
         (bend, Interval::point(2.0 * ASKEW) * both)
     }
 
@@ -140,8 +191,7 @@ impl<P: Fn(usize) -> usize + Copy> Squeeze<'_, P> {
         let (mut sum, speeds) = (Interval::ZERO, self.speeds(speed));
         for (c, weight) in self.contacts.iter().zip(multipliers).filter(|(_, weight)| **weight > 0.0) {
             let weight = Interval::point(*weight);
-            let size = c.point.length() + c.arm_a.length() + c.arm_b.length() + c.distance;
-            let off = ROUNDED * size + 2.0 * ASKEW * c.distance;
+            let off = ROUNDED * size(c) + 2.0 * ASKEW * c.distance;
             sum += weight * (Interval::around(c.distance, off) / Interval::point(length));
             let (bend, askew) = self.bend(c, &speeds);
             sum += weight * (bend * Interval::point(0.5 * length) + askew);
@@ -167,6 +217,21 @@ impl<P: Fn(usize) -> usize + Copy> Squeeze<'_, P> {
     }
 }
 
+/// Bounds on the motion of the bodies of a contact.
+struct Rates {
+    /// n: how fast its direction turns.
+    turn: Interval,
+    /// V_a + V_b.
+    both: Interval,
+    /// V_a²/ρ_a + V_b²/ρ_b: how fast their points are drawn inward.
+    inward: Interval,
+}
+
+/// The sizes that what was measured of a contact is computed from.
+fn size(c: &ContactPoint) -> f64 {
+    c.point.length() + c.arm_a.length() + c.arm_b.length() + c.distance
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::point::upright;
@@ -183,7 +248,7 @@ mod tests {
         let bodies = [body(0.0, 0.0), body(0.5, 0.0), body(0.0, -1.0)];
         let contact = |pair: [usize; 2], distance: f64| ContactPoint { distance, ..upright(pair) };
         let contacts = [contact([0, 1], rooms[0]), contact([1, 2], rooms[1])];
-        answer(&Squeeze { bodies: &bodies, contacts: &contacts, place: |i| i })
+        answer(&Squeeze { bodies: &bodies, contacts: &contacts, slides: &[1.0; 2], place: |i| i })
     }
 
     fn squeezed(rooms: [f64; 2], length: f64) -> bool {
@@ -212,6 +277,22 @@ mod tests {
         assert!(!squeezed([1e-6; 2], 1e-3) && !proven([1e-6; 2], 1e-3));
     }
 
+    /// Of two contacts that leave no room one ends after a way that is shorter than what the bodies move meanwhile.
+    #[test]
+    fn what_slips_off_is_no_part_of_a_proof() {
+        with_squeeze([1e-10, 3e-10], |squeeze| {
+            let moved = 2.0 * 5e-10 * (2.0 * FAST + 1.0);
+            for (slide, is_proven) in [(2.0 * moved, true), (0.4 * moved, false), (0.0, false)] {
+                let slides = &[1.0, slide];
+                assert_eq!(
+                    Squeeze { slides, ..*squeeze }.prove_infeasible(5e-10).is_some(),
+                    is_proven,
+                    "{slide}"
+                );
+            }
+        });
+    }
+
     /// Where a press meets a stone that could slip out, no multipliers are a proof.
     #[test]
     fn what_could_slip_out_is_not_crushed() {
@@ -224,7 +305,7 @@ mod tests {
         for tilt in [1e-2, -0.3] {
             let normal = DVec3::new(tilt, 1.0, 0.0).normalize();
             let contacts = [upright([0, 1]), ContactPoint { normal, ..upright([1, 2]) }];
-            let squeeze = Squeeze { bodies: &bodies, contacts: &contacts, place: |i| i };
+            let squeeze = Squeeze { bodies: &bodies, contacts: &contacts, slides: &[1.0; 2], place: |i| i };
             assert!(squeeze.prove_infeasible(1.0).is_none());
         }
     }

@@ -1,41 +1,15 @@
 //! Bodies that can go no further in a step stand still until its end.
 
 use super::event::Event;
+use super::slide::slide;
 use super::{Key, Step};
 use crate::StepError;
-use crate::contact::{ASKEW, CROSSING, ContactPoint, NEAR, SolverBody, Squeeze};
-use crate::faces::vertices_of;
+use crate::contact::{ContactPoint, NEAR, SolverBody, Squeeze};
 use crate::measured::{AROUND, measure};
 use crate::rigid_body::RigidBody;
 use crate::solved_body::{body_at, still};
 use crate::velocity::Velocity;
-use d2m_feature::FeaturePair;
 use std::collections::{BTreeMap, BTreeSet};
-
-/// Does the direction of a contact turn no faster than its bodies do: as the normal of a face at its features, or across two edges that cross
-/// at no small angle? That between two corners turns anyhow.
-fn is_steady(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) -> bool {
-    // Half of it is for rounding.
-    let most = 0.5 * ASKEW;
-    let meshes = bodies.map(|body| body.tree.mesh());
-    let features = vertices_of(contact.feature, meshes);
-    let turns = bodies.map(|body| body.pose_at(time).rotation);
-    let of_face = |k: usize| {
-        let direction = turns[k].conjugate() * contact.normal;
-        let nearest = bodies[k].faces.nearest(&features[k], direction);
-        nearest.is_some_and(|normal| (normal - direction).length() <= most)
-    };
-    let across_edges = || {
-        let edge = |k: usize| {
-            let [from, to] = [features[k][0], features[k][1]].map(|v| meshes[k].vertices()[v as usize]);
-            turns[k] * (to - from).normalize_or_zero()
-        };
-        let across = edge(0).cross(edge(1));
-        let along = contact.normal * across.dot(contact.normal).signum();
-        across.length() >= CROSSING && (across.normalize_or_zero() - along).length() <= most
-    };
-    of_face(0) || of_face(1) || matches!(contact.feature, FeaturePair::EdgeEdge { .. }) && across_edges()
-}
 
 impl Step<'_> {
     /// The bodies of these events stand still until the end of the step, unless it is proven that something crushes one of them.
@@ -98,7 +72,8 @@ impl Step<'_> {
         if !self.sim.bodies.iter().any(RigidBody::is_driven) {
             return None;
         }
-        let contacts = self.connected_contacts(time, events);
+        let (contacts, slides): (Vec<ContactPoint>, Vec<f64>) =
+            self.connected_contacts(time, events).into_iter().unzip();
         let mut members: Vec<usize> = contacts.iter().flat_map(|c| [c.a, c.b]).collect();
         members.sort_unstable();
         members.dedup();
@@ -113,7 +88,7 @@ impl Step<'_> {
         };
         let bodies: Vec<SolverBody> = members.iter().map(solver_body).collect();
         let place = |body: usize| members.binary_search(&body).unwrap_or_default();
-        let squeeze = Squeeze { bodies: &bodies, contacts: &contacts, place };
+        let squeeze = Squeeze { bodies: &bodies, contacts: &contacts, slides: &slides, place };
         let driven = members.iter().map(|&i| &sim.bodies[i]).filter(|body| body.is_driven());
         let until = driven.map(|body| body.goes_on_until(time)).fold(f64::INFINITY, f64::min);
         let length = (until - time).min(sim.options.gap / squeeze.closing());
@@ -122,10 +97,11 @@ impl Step<'_> {
         Some(if is_driven(contact.a) { [contact.a, contact.b] } else { [contact.b, contact.a] })
     }
 
-    /// The contacts within the gap or so of all that they connect with the bodies of some events, as they are at a time of the flights.
-    fn connected_contacts(&mut self, time: f64, events: &[Event]) -> Vec<ContactPoint> {
+    /// The contacts within the gap or so of all that they connect with the bodies of some events, as they are at a time of the flights, with
+    /// what each may slide; those whose direction turns by itself prove nothing.
+    fn connected_contacts(&mut self, time: f64, events: &[Event]) -> Vec<(ContactPoint, f64)> {
         let mut ring: Vec<usize> = events.iter().flat_map(|event| event.bodies).collect();
-        let (mut seen, mut found) = (BTreeSet::new(), BTreeMap::<Key, Vec<ContactPoint>>::new());
+        let (mut seen, mut found) = (BTreeSet::new(), BTreeMap::<Key, Vec<(ContactPoint, f64)>>::new());
         while !ring.is_empty() {
             ring.retain(|&i| self.sim.bodies[i].is_dynamic() && seen.insert(i));
             let keys = self.partners(&ring);
@@ -145,8 +121,9 @@ impl Step<'_> {
                 if !contacts.is_empty() {
                     ring.extend([key.0, key.1]);
                 }
-                contacts.retain(|contact| is_steady(contact, [&sim.bodies[key.0], &sim.bodies[key.1]], time));
-                found.insert(key, contacts);
+                let bodies = [&sim.bodies[key.0], &sim.bodies[key.1]];
+                let with_slide = |contact| slide(&contact, bodies, time).map(|slide| (contact, slide));
+                found.insert(key, contacts.into_iter().filter_map(with_slide).collect());
             }
         }
         found.into_values().flatten().collect()

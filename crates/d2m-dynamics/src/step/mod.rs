@@ -9,6 +9,7 @@ mod plan;
 mod resolve;
 mod sense;
 mod sleepers;
+mod slide;
 
 use crate::contact::{ContactPoint, HIT};
 use crate::momenta::Momenta;
