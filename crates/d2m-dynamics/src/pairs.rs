@@ -62,7 +62,7 @@ pub(crate) struct Pair {
     pub(crate) axes: Attempts,
     /// What the contacts do to each of the bodies, in a unit of time, on average; where it sleeps, what they did when it fell asleep.
     pub(crate) borne: [Momenta; 2],
-    /// What they have done to it since, besides that.
+    /// What they do to it besides that while it sleeps, on average.
     pub(crate) owed: [Momenta; 2],
 }
 

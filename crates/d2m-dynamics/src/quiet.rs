@@ -69,7 +69,7 @@ impl Quiet {
         let is_quiet = match rest {
             Rest::Unbraked => surface.speed <= still.min(steady),
             Rest::BySpeed => surface.speed <= (way / QUIET_TIME).min(steady),
-            Rest::ByWay => !self.is_left_by(surface, options.gap),
+            Rest::ByWay => !self.is_left_by(surface, options.gap, 0.0),
         };
         if is_quiet {
             self.time += step;
@@ -80,9 +80,9 @@ impl Quiet {
         }
     }
 
-    /// Is a surface further from where it was in the quiet time than solutions shake it?
-    pub(crate) fn is_left_by(&self, surface: Surface, gap: f64) -> bool {
-        self.way_to(surface).is_none_or(|way| way > SHAKEN_WAY * gap)
+    /// Is a surface further from where it was in the quiet time than solutions shake it, by so much?
+    pub(crate) fn is_left_by(&self, surface: Surface, gap: f64, more: f64) -> bool {
+        self.way_to(surface).is_none_or(|way| way > SHAKEN_WAY * gap + more)
     }
 
     /// How far a point of the surface has come at most.
