@@ -80,7 +80,7 @@ impl Quiet {
         }
     }
 
-    /// Is a surface further from where it was in the quiet time than solutions shake it, by so much?
+    /// Is a surface further from where it was in the quiet time than solutions shake it, and by more than this?
     pub(crate) fn is_left_by(&self, surface: Surface, gap: f64, more: f64) -> bool {
         self.way_to(surface).is_none_or(|way| way > SHAKEN_WAY * gap + more)
     }
