@@ -7,7 +7,8 @@ use crate::motion::{Form, motion_argument};
 use crate::options::{QueryKeywords, REPORT, radii, solids, window};
 use crate::supervise::{Watch, pool, supervised};
 use d2m::bvh::{
-    MeshTree, Moving, PairCache, QueryOptions, Solid, TimeOfContact, Window, contact_exists, time_of_contact,
+    MeshTree, Moving, PairCache, QueryOptions, Solid, StartState, TimeOfContact, Window, contact_exists,
+    time_of_contact,
 };
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -48,6 +49,15 @@ impl MovingPair {
                 .with_solid(self.solids[body])
                 .with_radius(self.radii[body])
         })
+    }
+}
+
+/// Is all of an answer decided, how the bodies begin, too?
+pub(crate) fn is_decided(answer: &TimeOfContact) -> bool {
+    match answer {
+        TimeOfContact::Undecided { .. } => false,
+        TimeOfContact::Contact(contact) => contact.start != StartState::Undecided,
+        _ => true,
     }
 }
 
@@ -124,7 +134,6 @@ pub(crate) fn time_of_contact_py<'py>(
     let pair = MovingPair::new([a, b], [motion_a, motion_b], solid, radius)?;
     let [a, b] = pair.moving();
     let ask = |options: &QueryOptions| Ok(time_of_contact(a, b, window, options)?);
-    let is_decided = |answer: &TimeOfContact| !matches!(answer, TimeOfContact::Undecided { .. });
     answer::object(py, run(py, &options, ask, is_decided)?)
 }
 

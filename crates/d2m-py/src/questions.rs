@@ -2,12 +2,11 @@
 
 use crate::answer;
 use crate::options::{QueryKeywords, REPORT, window};
-use crate::query::{MovingPair, run};
+use crate::query::{MovingPair, is_decided, run};
 use crate::witness::Witness;
 use d2m::bvh::{Clearance as Found, ClearanceOptions, ClearanceStatus, SpanStatus};
 use d2m::{
-    ContactSpan, Departure as FoundDeparture, QueryOptions, TimeOfContact, clearance, contact_spans,
-    departure,
+    ContactSpan, Departure as FoundDeparture, QueryOptions, StartState, clearance, contact_spans, departure,
 };
 use d2m_io::start_word;
 use pyo3::prelude::*;
@@ -243,6 +242,6 @@ pub(crate) fn departure_py(
     let pair = MovingPair::new([a, b], [motion_a, motion_b], solid, radius)?;
     let [a, b] = pair.moving();
     let ask = |options: &QueryOptions| Ok(departure(a, b, window, options)?);
-    let is_decided = |found: &FoundDeparture| !matches!(found.answer, TimeOfContact::Undecided { .. });
-    Ok(Departure { found: run(py, &options, ask, is_decided)? })
+    let is_known = |found: &FoundDeparture| found.start != StartState::Undecided && is_decided(&found.answer);
+    Ok(Departure { found: run(py, &options, ask, is_known)? })
 }
