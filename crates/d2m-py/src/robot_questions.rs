@@ -10,7 +10,7 @@ use crate::robot::Robot;
 use crate::robot_edges::EdgeBatch;
 use crate::supervise::{Watch, pool};
 use crate::verify::{Verdict, in_growing_steps, ran_out};
-use d2m::bvh::QueryOptions;
+use d2m::bvh::{QueryOptions, StartState};
 use d2m::verify::{PathVerdict, verify_path};
 use d2m_robot::PathAnswer as Found;
 use pyo3::prelude::*;
@@ -174,7 +174,11 @@ impl Robot {
             };
             Ok(scene.edges(&names)?.check(from, to)?)
         };
-        let is_decided = |answer: &Found| !matches!(answer, Found::Undecided { .. });
+        let is_decided = |answer: &Found| match answer {
+            Found::Undecided { .. } => false,
+            Found::Contact(met) => met.contact.start != StartState::Undecided,
+            _ => true,
+        };
         PathAnswer::of(py, run(py, scene.options(), ask, is_decided)?)
     }
 

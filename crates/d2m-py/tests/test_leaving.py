@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import d2m_ccd
 import numpy as np
 import pytest
@@ -37,6 +39,16 @@ def test_what_is_in_contact_at_the_start_is_let_go() -> None:
     assert results["time_lo"].tolist() == [met.time_lo] * 3
     with pytest.raises(InputError, match="start is \"go\""):
         d2m_ccd.time_of_contact(tree, tree, start="go")  # type: ignore[call-overload,unused-ignore]
+
+
+def test_how_bodies_begin_is_the_same_whatever_else_the_machine_does() -> None:
+    # More threads than processors: the first limit of a few milliseconds ends some queries between their answer and the judgement of the start.
+    tree = d2m_ccd.Tree(CUBE)
+    motion = d2m_ccd.Keyframes([0.0, 1.0, 2.0], [d2m_ccd.Pose(x=[0, 0, z]) for z in (0.5, 1.5, 0.5)])
+    with ThreadPoolExecutor(16) as pool:
+        found = list(pool.map(lambda _: d2m_ccd.departure(tree, tree, motion, window=(0.0, 2.0)), range(3000)))
+    assert {one.start for one in found} == {"overlapping"}
+    assert all((one.left, one.answer) == (found[0].left, found[0].answer) for one in found)
 
 
 def test_worlds_let_go_and_have_bodies_with_radii() -> None:

@@ -36,7 +36,7 @@ pub(crate) fn judge(segments: &[Segment], trees: &[Arc<MeshTree>]) {
     judge_from(f64::NEG_INFINITY, segments, trees);
 }
 
-/// The same; whether bodies meet is asked of segments from a time on.
+/// The same; whether bodies meet is judged in segments from a time on.
 pub(crate) fn judge_from(begin: f64, segments: &[Segment], trees: &[Arc<MeshTree>]) {
     let mut flights: Vec<ConstantTwist> = Vec::new();
     for (k, segment) in segments.iter().enumerate() {

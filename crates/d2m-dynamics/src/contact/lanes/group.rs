@@ -22,7 +22,7 @@ pub(super) trait Side: Clone + Default {
     fn pushes<D: Doubles>(&self, impulses: &[D; 3]) -> Pushes<D>;
 }
 
-/// What is asked of the block in each lane, whatever its kind; zero where there is none.
+/// What the block in each lane must reach, whatever its kind; zero where there is none.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Asked {
     pub(super) scale: Quad,
