@@ -53,39 +53,38 @@ impl Faces {
         (nearest != DVec3::ZERO).then(|| if nearest.dot(direction) < 0.0 { -nearest } else { nearest })
     }
 
-    /// How far the flat part of the surface below a point, near these vertices, goes on around it at least, in all directions. Flat is what
-    /// faces along this direction, or all against it, up to so much. None: there is no such part. Coordinates of the mesh.
+    /// How far the flat part of the surface around a point of it, near these vertices, goes on at least, in all directions. Flat is what
+    /// faces along this direction, or all against it, up to so much, and the point lies on it, up to `rounding`: not on what faces that way behind
+    /// it, as behind a fold. None: there is no such part. Coordinates of the mesh.
     ///
-    /// Let the outline of the triangles, the sides that no other of them shares, be r away from the point on their plane, and a point of one of
-    /// them r/4. A disc of radius 3r/4 about that point has no point of the outline, so the triangles go on in all of it: they do up to r/2 from
-    /// the point itself.
+    /// Let the outline of the triangles, the sides that no other of them shares, be r away from the point. A disc of that radius about the point,
+    /// which is in one of them, has no point of the outline, so the triangles go on in all of it. Half of it counts.
     pub(crate) fn flat_around(
         &self,
         mesh: &TriMesh,
         vertices: &[u32],
         [point, direction]: [DVec3; 2],
-        most: f64,
+        [most, rounding]: [f64; 2],
     ) -> Option<f64> {
-        let off = |t: u32, side: f64| (self.normals[t as usize] * side - direction).length();
-        let mut flat: Vec<u32> = vertices.iter().flat_map(|&v| self.at(v)).copied().collect();
-        let side = if flat.iter().any(|&t| off(t, 1.0) <= most) { 1.0 } else { -1.0 };
-        flat.retain(|&t| off(t, side) <= most);
-        flat.sort_unstable();
-        flat.dedup();
+        let mut near: Vec<u32> = vertices.iter().flat_map(|&v| self.at(v)).copied().collect();
+        near.sort_unstable();
+        near.dedup();
         let sides = |t: u32| {
             let [i, j, k] = mesh.triangles()[t as usize];
             [[i, j], [j, k], [k, i]]
         };
         let at = |v: u32| mesh.vertices()[v as usize];
-        let &first = flat.first()?;
-        let point = point - direction * direction.dot(point - mesh.corners(first as usize)[0]);
-        let has_outside = |&[from, to]: &[u32; 2]| !flat.iter().any(|&t| sides(t).contains(&[to, from]));
-        let outline = flat.iter().flat_map(|&t| sides(t)).filter(has_outside);
-        let room =
-            outline.map(|[from, to]| to_hull(point, &[at(from), at(to)])).fold(f64::INFINITY, f64::min);
-        let below =
-            flat.iter().map(|&t| to_hull(point, &mesh.corners(t as usize))).fold(f64::INFINITY, f64::min);
-        (below <= 0.25 * room).then_some(0.5 * room)
+        let facing = |side: f64| {
+            let is_flat = |&t: &u32| (self.normals[t as usize] * side - direction).length() <= most;
+            let flat: Vec<u32> = near.iter().copied().filter(is_flat).collect();
+            let has_outside = |&[from, to]: &[u32; 2]| !flat.iter().any(|&t| sides(t).contains(&[to, from]));
+            let outline = flat.iter().flat_map(|&t| sides(t)).filter(has_outside);
+            let room =
+                outline.map(|[from, to]| to_hull(point, &[at(from), at(to)])).fold(f64::INFINITY, f64::min);
+            let is_on = |&t: &u32| to_hull(point, &mesh.corners(t as usize)) <= rounding;
+            flat.iter().any(is_on).then_some(0.5 * room)
+        };
+        [1.0, -1.0].into_iter().filter_map(facing).reduce(f64::max)
     }
 }
 
@@ -105,5 +104,30 @@ pub(crate) fn vertices_of(feature: FeaturePair, meshes: [&TriMesh; 2]) -> [[u32;
         FeaturePair::VertexFace { vertex, face: triangle } => [[vertex; 3], face(1, triangle)],
         FeaturePair::FaceVertex { face: triangle, vertex } => [face(0, triangle), [vertex; 3]],
         FeaturePair::EdgeEdge { edge_a: [a, b], edge_b: [c, d] } => [[a, b, b], [c, d, d]],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A plate and a hem on it, folded over at its edge by a hundred-millionth: what slips off the hem has more room.
+    #[test]
+    fn what_lies_behind_a_fold_is_not_flat_with_it() {
+        let edge = [DVec3::new(-10.0, 0.0, -1.0), DVec3::new(-10.0, 0.0, 1.0)];
+        let plate = [DVec3::new(10.0, 0.0, 1.0), DVec3::new(10.0, 0.0, -1.0)];
+        let hem = [DVec3::new(0.0, 1e-7, -1.0), DVec3::new(0.0, 1e-7, 1.0)];
+        let vertices = [edge, plate, hem].concat();
+        let mesh = TriMesh::try_new(vertices, vec![[0, 1, 2], [0, 2, 3], [1, 0, 4], [1, 4, 5]]).unwrap();
+        let faces = Faces::new(&mesh);
+        let (point, tiny) = (DVec3::new(-0.1, 0.99e-7, 0.0), [1.0 / (1u64 << 25) as f64, 1e-12]);
+        for direction in [DVec3::Y, DVec3::NEG_Y] {
+            let around = faces.flat_around(&mesh, &[0, 4, 5], [point, direction], tiny).unwrap();
+            assert!((around - 0.05).abs() < 1e-6, "{around}");
+        }
+        // On the plate beyond the hem, and beneath it.
+        let plate = DVec3::new(0.5, 0.0, 0.0);
+        assert!(faces.flat_around(&mesh, &[0, 2, 3], [plate, DVec3::Y], tiny).unwrap() > 0.4);
+        assert_eq!(faces.flat_around(&mesh, &[0, 2, 3], [plate - DVec3::Y * 1e-7, DVec3::Y], tiny), None);
     }
 }

@@ -67,6 +67,24 @@ impl RigidBody {
         }
     }
 
+    /// How far what follows its motion is at most, at any time until then, from where its present flight would lead on: at its horizon it is where
+    /// its motion has it. None: it is not known.
+    pub(crate) fn strays(&self, until: f64) -> Option<f64> {
+        if self.horizon >= until {
+            return Some(0.0);
+        }
+        let covered = self.covered_motion(self.horizon, until).ok()??;
+        let (motion, span) = (covered.motion(), Interval::new(self.horizon, until));
+        let (twist, pose) = (motion.enclose_twist(span), motion.enclose_pose(span));
+        let arm = pose.enclose_vector(self.center - pose.at);
+        let center = twist.linear + twist.angular.cross(arm);
+        let linear = center - IntervalVec3::point(self.flight.linear_velocity());
+        let angular = twist.angular - IntervalVec3::point(self.flight.angular_velocity());
+        let rate = linear.norm() + angular.norm() * self.radius;
+        let off = rate * (Interval::point(until) - Interval::point(self.horizon));
+        off.sup().is_finite().then_some(off.sup())
+    }
+
     /// The flight of a driven body that ends at its target; at rest where it has none.
     fn follow_target(&mut self, end: f64) -> Result<(), StepError> {
         let Some(target) = self.target else {

@@ -2,7 +2,8 @@
 
 use d2m_bvh::{MeshTree, Posed, Solid, StartState, TriMesh, distance};
 use d2m_dynamics::{Body, Kind, Mass, MassProperties, Simulation, SimulationOptions, StepError};
-use d2m_motion::{ConstantTwist, Keyframes, Pose, Span};
+use d2m_interval::{Interval, IntervalVec3};
+use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Pose, RigidMotion, Span, Twist};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
@@ -326,6 +327,72 @@ fn what_rounding_decides_is_not_called_crushed() {
     let StepError::Cornered { pushing, cornered, time } = error else { panic!("{error:?}") };
     assert_eq!((pushing.as_str(), cornered.as_str()), ("press", "cube"));
     assert!(time > 1.0 - 1e-9 && time <= 1.0, "{time}");
+}
+
+/// Comes down, turns back where it leaves so much room at a time, and goes up again.
+struct Crank {
+    low: f64,
+    time: f64,
+}
+
+impl Crank {
+    const ACCELERATION: f64 = 4.0;
+}
+
+impl RigidMotion for Crank {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        let since = t - self.time;
+        let height = self.low + 0.5 * Self::ACCELERATION * since * since;
+        let twist = Twist { linear: DVec3::Y * (Self::ACCELERATION * since), ..Twist::ZERO };
+        (Pose { translation: DVec3::Y * height, ..Pose::IDENTITY }, twist)
+    }
+
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        let since = t - Interval::point(self.time);
+        let y = Interval::point(self.low) + Interval::point(0.5 * Self::ACCELERATION) * (since * since);
+        IntervalPose { translation: IntervalVec3 { y, ..IntervalVec3::ZERO }, ..IntervalPose::IDENTITY }
+    }
+
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        let y = Interval::point(Self::ACCELERATION) * (t - Interval::point(self.time));
+        IntervalTwist { linear: IntervalVec3 { y, ..IntervalVec3::ZERO }, angular: IntervalVec3::ZERO }
+    }
+
+    fn enclose_twist_rate(&self, _: Interval) -> IntervalTwist {
+        let y = Interval::point(Self::ACCELERATION);
+        IntervalTwist { linear: IntervalVec3 { y, ..IntervalVec3::ZERO }, angular: IntervalVec3::ZERO }
+    }
+}
+
+/// A press that turns back, or a table that leaves, at the end of a step in which less room is left than queries resolve: nothing is crushed.
+#[test]
+fn what_turns_back_crushes_nothing() {
+    let (left, cube) = (1e-12, tree("box?x=0.3&y=0.3&z=0.3"));
+    let time = (0..20).fold(0.0, |time, _| time + 0.01);
+    let at = |y: f64| Pose { translation: DVec3::Y * y, ..Pose::IDENTITY };
+    let falls = [(0.0, at(-1.0)), (time, at(-1.0)), (1.0, at(-5.0))];
+    let comes = ConstantTwist::REST
+        .with_position(DVec3::Y * (0.8 + left))
+        .with_linear_velocity(DVec3::Y * -0.5)
+        .with_reference_time(time);
+    let rests = Kind::Kinematic(Arc::new(
+        Keyframes::try_new(&[(0.0, at(-1.0)), (9.0, at(-1.0))], Span::Linear).unwrap(),
+    ));
+    let leaves = Kind::Kinematic(Arc::new(Keyframes::try_new(&falls, Span::Linear).unwrap()));
+    let turns = Kind::Kinematic(Arc::new(Crank { low: 0.8 + left, time }));
+    for (table, press) in [(rests, turns), (leaves, Kind::Kinematic(Arc::new(comes)))] {
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        simulation.add(&Body::new("table", tree("box?x=10&y=1&z=10")).with_kind(table)).unwrap();
+        simulation.add(&Body::new("cube", Arc::clone(&cube)).with_position(DVec3::Y * 0.3005)).unwrap();
+        simulation.add(&Body::new("press", tree("box?x=1&y=0.2&z=1")).with_kind(press)).unwrap();
+        let error = loop {
+            match simulation.step() {
+                Ok(_) if simulation.time() < 0.3 => {}
+                outcome => break outcome.err(),
+            }
+        };
+        assert!(!matches!(error, Some(StepError::Crushed { .. })), "{error:?}");
+    }
 }
 
 /// A press comes down with its rim on the top of a stone, which could turn out from under it: nothing is crushed. With what lies well below the

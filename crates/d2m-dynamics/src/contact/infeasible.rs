@@ -21,6 +21,8 @@
 //! bend = V_a²/ρ_a + V_b²/ρ_b + 4 n (V_a + V_b) + n² d,     n = max(V_a/ρ_a, V_b/ρ_b), across edges TURNING times that
 //! ```
 //!
+//! where how fast a body turns that follows its motion, at most V/ρ, is known.
+//!
 //! What is proven is proven of the features that were measured. So only contacts count whose closest points cannot slip off them meanwhile: those
 //! that may slide by s, where
 //!
@@ -64,7 +66,7 @@ pub(crate) const LEVER: f64 = 10.0;
 /// each contact of faces that takes part, a seventh across edges, and half of both where one of the bodies rests.
 const STEADY: f64 = 1.0 / (1u64 << 7) as f64;
 /// Rounding of a measured distance, of the sizes that it is computed from: fewer than 64 operations of 2⁻⁵³ each, doubled.
-const ROUNDED: f64 = 1.0 / (1u64 << 46) as f64;
+pub(crate) const ROUNDED: f64 = 1.0 / (1u64 << 46) as f64;
 
 /// Contacts, the bodies of which `place` finds in the list, without velocities but for what follows its motion.
 #[derive(Clone, Copy)]
@@ -125,7 +127,7 @@ impl<P: Fn(usize) -> usize + Copy> Squeeze<'_, P> {
         let stays = |(c, slide): (&ContactPoint, &f64)| {
             let Rates { turn, both, .. } = self.rates(c, &speeds);
             let moved = Interval::point(2.0 * length) * (both + turn * Interval::point(c.distance));
-            let room = Interval::point(*slide - ROUNDED * size(c)) - moved;
+            let room = Interval::point(*slide - ROUNDED * c.size()) - moved;
             room.certainly_positive() && (turn * Interval::point(length)).sup() <= MOST_TURN
         };
         self.contacts.iter().zip(self.slides).map(stays).collect()
@@ -158,22 +160,22 @@ impl<P: Fn(usize) -> usize + Copy> Squeeze<'_, P> {
         System::new(bodies, &smooth, self.place).press_hard(&targets, fastest)
     }
 
-    /// How fast points of each body are at most, and the longest arm of its contacts, where what impulses move is as fast as this.
+    /// How fast points of each body are at most, and how fast it turns, where what impulses move is as fast as this: whatever is met at its
+    /// center alone may turn at any rate.
     fn speeds(&self, speed: f64) -> Vec<(Interval, Interval)> {
         let speeds = |(body, reach): (&SolverBody, f64)| {
-            let reach = Interval::point(reach);
+            let (speed, reach) = (Interval::point(speed), Interval::point(reach));
             let Velocity { linear, angular } = body.velocity;
             let [linear, angular] = [linear, angular].map(|v| IntervalVec3::point(v).norm());
-            let own = linear.max(angular * reach);
-            (if body.inverse_mass > 0.0 { Interval::point(speed) } else { own }, reach)
+            let turn = if reach == Interval::ZERO { Interval::ENTIRE } else { speed / reach };
+            if body.inverse_mass > 0.0 { (speed, turn) } else { (linear.max(angular * reach), angular) }
         };
         self.bodies.iter().zip(self.reach()).map(speeds).collect()
     }
 
     /// How fast the bodies of a contact move, and its direction turns, at most.
     fn rates(&self, c: &ContactPoint, speeds: &[(Interval, Interval)]) -> Rates {
-        let [(va, ra), (vb, rb)] = [c.a, c.b].map(|body| speeds[(self.place)(body)]);
-        let (ta, tb) = (va / ra, vb / rb);
+        let [(va, ta), (vb, tb)] = [c.a, c.b].map(|body| speeds[(self.place)(body)]);
         let turning = if matches!(c.feature, FeaturePair::EdgeEdge { .. }) { TURNING } else { 1.0 };
         Rates { turn: Interval::point(turning) * ta.max(tb), both: va + vb, inward: va * ta + vb * tb }
     }
@@ -191,7 +193,7 @@ impl<P: Fn(usize) -> usize + Copy> Squeeze<'_, P> {
         let (mut sum, speeds) = (Interval::ZERO, self.speeds(speed));
         for (c, weight) in self.contacts.iter().zip(multipliers).filter(|(_, weight)| **weight > 0.0) {
             let weight = Interval::point(*weight);
-            let off = ROUNDED * size(c) + 2.0 * ASKEW * c.distance;
+            let off = ROUNDED * c.size() + 2.0 * ASKEW * c.distance;
             sum += weight * (Interval::around(c.distance, off) / Interval::point(length));
             let (bend, askew) = self.bend(c, &speeds);
             sum += weight * (bend * Interval::point(0.5 * length) + askew);
@@ -225,11 +227,6 @@ struct Rates {
     both: Interval,
     /// V_a²/ρ_a + V_b²/ρ_b: how fast their points are drawn inward.
     inward: Interval,
-}
-
-/// The sizes that what was measured of a contact is computed from.
-fn size(c: &ContactPoint) -> f64 {
-    c.point.length() + c.arm_a.length() + c.arm_b.length() + c.distance
 }
 
 #[cfg(test)]
@@ -296,17 +293,25 @@ mod tests {
     /// Where a press meets a stone that could slip out, no multipliers are a proof.
     #[test]
     fn what_could_slip_out_is_not_crushed() {
-        let body = |inverse_mass: f64, rate: f64| SolverBody {
-            inverse_mass,
-            inverse_inertia: DMat3::IDENTITY * inverse_mass,
-            velocity: Velocity { linear: DVec3::Y * rate, angular: DVec3::ZERO },
-        };
-        let bodies = [body(0.0, 0.0), body(0.5, 0.0), body(0.0, -1.0)];
         for tilt in [1e-2, -0.3] {
             let normal = DVec3::new(tilt, 1.0, 0.0).normalize();
-            let contacts = [upright([0, 1]), ContactPoint { normal, ..upright([1, 2]) }];
-            let squeeze = Squeeze { bodies: &bodies, contacts: &contacts, slides: &[1.0; 2], place: |i| i };
-            assert!(squeeze.prove_infeasible(1.0).is_none());
+            with_squeeze([0.0; 2], |squeeze| {
+                let contacts = [squeeze.contacts[0], ContactPoint { normal, ..squeeze.contacts[1] }];
+                assert!(Squeeze { contacts: &contacts, ..*squeeze }.prove_infeasible(1.0).is_none());
+            });
         }
+    }
+
+    /// What is met at its center alone may turn at any rate, and nothing is proven of it; what rests, or comes down without a turn, may be.
+    #[test]
+    fn what_is_met_at_its_center_may_turn_at_any_rate() {
+        let zero = DVec3::ZERO;
+        with_squeeze([1e-10, 3e-10], |squeeze| {
+            let [lower, upper] = [squeeze.contacts[0], squeeze.contacts[1]];
+            let at_others = [ContactPoint { arm_a: zero, ..lower }, ContactPoint { arm_b: zero, ..upper }];
+            let at_stone = [ContactPoint { arm_b: zero, ..lower }, ContactPoint { arm_a: zero, ..upper }];
+            let proof = |contacts| Squeeze { contacts, ..*squeeze }.prove_infeasible(5e-10);
+            assert!(proof(&at_others).is_some() && proof(&at_stone).is_none());
+        });
     }
 }

@@ -22,7 +22,7 @@ mod system;
 pub(crate) use accuracy::{Accuracy, Company};
 pub(crate) use common_turn::in_common_turn;
 pub(crate) use impact::impact;
-pub(crate) use infeasible::{ASKEW, CROSSING, LEVER, Squeeze};
+pub(crate) use infeasible::{ASKEW, CROSSING, LEVER, ROUNDED, Squeeze};
 pub(crate) use law::Law;
 pub(crate) use newton::Start;
 pub use point::Material;

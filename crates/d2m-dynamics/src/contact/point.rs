@@ -96,6 +96,11 @@ impl ContactPoint {
         }
     }
 
+    /// The sizes that what was measured of it is computed from.
+    pub(crate) fn size(&self) -> f64 {
+        self.point.length() + self.arm_a.length() + self.arm_b.length() + self.distance
+    }
+
     /// By how much it may close in a flight that shares what room there is, at least.
     pub(crate) fn shared_room(&self) -> f64 {
         self.distance - SHARED * self.distance.min(self.gap)

@@ -66,8 +66,8 @@ impl Step<'_> {
     }
 
     /// What follows its motion and the body that it presses on, if all that contacts connect with the bodies of these events has no
-    /// motion with which it keeps apart for as long as that takes to close a gap. What follows its motion goes on as in its present flight,
-    /// unless its motion has a joint before that.
+    /// motion with which it keeps apart for as long as that takes to close a gap. What follows its motion goes on as in its present flight until
+    /// that ends, and then by its motion: it may turn back there.
     fn proven_crushed(&mut self, time: f64, events: &[Event]) -> Option<[usize; 2]> {
         if !self.sim.bodies.iter().any(RigidBody::is_driven) {
             return None;
@@ -89,12 +89,28 @@ impl Step<'_> {
         let bodies: Vec<SolverBody> = members.iter().map(solver_body).collect();
         let place = |body: usize| members.binary_search(&body).unwrap_or_default();
         let squeeze = Squeeze { bodies: &bodies, contacts: &contacts, slides: &slides, place };
-        let driven = members.iter().map(|&i| &sim.bodies[i]).filter(|body| body.is_driven());
-        let until = driven.map(|body| body.goes_on_until(time)).fold(f64::INFINITY, f64::min);
-        let length = (until - time).min(sim.options.gap / squeeze.closing());
-        let contact = squeeze.prove_infeasible(length)?;
+        let follow = || members.iter().map(|&i| &sim.bodies[i]).filter(|body| body.is_kinematic());
+        let longest = time + sim.options.gap / squeeze.closing();
+        let in_flights = follow().map(|body| body.horizon).fold(longest, f64::min);
+        let beyond = follow().map(|body| body.goes_on_until(time)).fold(longest, f64::min);
+        let contact = squeeze.prove_infeasible(in_flights - time).or_else(|| {
+            let contacts = self.with_what_strays(&contacts, beyond)?;
+            Squeeze { contacts: &contacts, ..squeeze }.prove_infeasible(beyond - time)
+        })?;
         let is_driven = |i: usize| sim.bodies[i].is_driven();
         Some(if is_driven(contact.a) { [contact.a, contact.b] } else { [contact.b, contact.a] })
+    }
+
+    /// The contacts, with as much more room each as what follows its motion may be off its flight until this time. None: it is not known.
+    fn with_what_strays(&self, contacts: &[ContactPoint], until: f64) -> Option<Vec<ContactPoint>> {
+        let strays = |i: usize| {
+            let body = &self.sim.bodies[i];
+            if body.is_kinematic() { body.strays(until) } else { Some(0.0) }
+        };
+        let with = |c: &ContactPoint| {
+            Some(ContactPoint { distance: c.distance + strays(c.a)? + strays(c.b)?, ..*c })
+        };
+        contacts.iter().map(with).collect()
     }
 
     /// The contacts within the gap or so of all that they connect with the bodies of some events, as they are at a time of the flights, with

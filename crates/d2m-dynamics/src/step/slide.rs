@@ -1,6 +1,6 @@
 //! How far closest points may slide on their features until they may slip off.
 
-use crate::contact::{ASKEW, CROSSING, ContactPoint, LEVER};
+use crate::contact::{ASKEW, CROSSING, ContactPoint, LEVER, ROUNDED};
 use crate::faces::vertices_of;
 use crate::rigid_body::RigidBody;
 use d2m_feature::FeaturePair;
@@ -14,10 +14,15 @@ pub(super) fn slide(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) 
     let meshes = bodies.map(|body| body.tree.mesh());
     let features = vertices_of(contact.feature, meshes);
     let poses = bodies.map(|body| body.pose_at(time));
-    let local = poses.map(|pose| pose.rotation.conjugate() * (contact.point - pose.translation));
+    let local = poses.map(|pose| pose.inverse_transform_point(contact.point));
     let on_face = |k: usize| {
         let direction = poses[k].rotation.conjugate() * contact.normal;
-        bodies[k].faces.flat_around(meshes[k], &features[k], [local[k], direction], most)
+        // From the middle of the closest points to that of this body, and of its mesh.
+        let inward = [-1.0, 1.0][k] * (0.5 * contact.distance + bodies[k].rounding);
+        let point = local[k] + direction * inward;
+        let size = contact.size() + point.length() + bodies[k].rounding;
+        let off = [most, ROUNDED * size + most * contact.distance];
+        bodies[k].faces.flat_around(meshes[k], &features[k], [point, direction], off)
     };
     let across_edges = || {
         let ends = |k: usize| [features[k][0], features[k][1]].map(|v| meshes[k].vertices()[v as usize]);
@@ -39,15 +44,21 @@ mod tests {
     use crate::contact::Material;
     use crate::faces::Faces;
     use crate::measured::{AROUND, measure};
-    use d2m_bvh::MeshTree;
+    use d2m_bvh::{MeshTree, TriMesh};
     use glam::{DQuat, DVec3};
     use std::f64::consts::FRAC_PI_4;
     use std::sync::Arc;
 
     const GAP: f64 = 1e-3;
 
+    /// The mesh begins this far from its origin, so that its center is there.
+    const OFF: DVec3 = DVec3::new(-0.3, 0.0, 2.0);
+
     fn body(shape: &str, position: DVec3, turn: DQuat) -> RigidBody {
-        let tree = Arc::new(MeshTree::new(d2m_shapes::mesh(shape).unwrap()));
+        let mesh = d2m_shapes::mesh(shape).unwrap();
+        let vertices = mesh.vertices().iter().map(|&vertex| vertex + OFF).collect();
+        let mesh = TriMesh::try_new(vertices, mesh.triangles().to_vec()).unwrap();
+        let (tree, position) = (Arc::new(MeshTree::new(mesh)), position - turn * OFF);
         let faces = Arc::new(Faces::new(tree.mesh()));
         RigidBody::try_new(&Body::new("", tree).with_position(position).with_orientation(turn), faces, 0.0)
             .unwrap()
