@@ -1,7 +1,7 @@
 //! Which triangles meet at a vertex, and how far flat parts of the surface go on around a point.
 
 use d2m_bvh::TriMesh;
-use d2m_feature::FeaturePair;
+use d2m_feature::{FeaturePair, closest_weights};
 use d2m_mesh::Simplex;
 use glam::DVec3;
 
@@ -66,9 +66,7 @@ impl Faces {
         [point, direction]: [DVec3; 2],
         [most, rounding]: [f64; 2],
     ) -> Option<f64> {
-        let mut near: Vec<u32> = vertices.iter().flat_map(|&v| self.at(v)).copied().collect();
-        near.sort_unstable();
-        near.dedup();
+        let near = self.around(vertices);
         let sides = |t: u32| {
             let [i, j, k] = mesh.triangles()[t as usize];
             [[i, j], [j, k], [k, i]]
@@ -80,21 +78,53 @@ impl Faces {
             let has_outside = |&[from, to]: &[u32; 2]| !flat.iter().any(|&t| sides(t).contains(&[to, from]));
             let outline = flat.iter().flat_map(|&t| sides(t)).filter(has_outside);
             let room =
-                outline.map(|[from, to]| to_hull(point, &[at(from), at(to)])).fold(f64::INFINITY, f64::min);
-            let is_on = |&t: &u32| to_hull(point, &mesh.corners(t as usize)) <= rounding;
+                outline.map(|[from, to]| to_segment(point, [at(from), at(to)])).fold(f64::INFINITY, f64::min);
+            let is_on =
+                |&t: &u32| nearest_point(point, &mesh.corners(t as usize)).distance(point) <= rounding;
             flat.iter().any(is_on).then_some(0.5 * room)
         };
         [1.0, -1.0].into_iter().filter_map(facing).reduce(f64::max)
     }
+
+    /// The triangle at these vertices nearest to a point, of those that face along this direction or against it, up to so much, and a point of it.
+    /// Coordinates of the mesh.
+    pub(crate) fn below(
+        &self,
+        mesh: &TriMesh,
+        vertices: &[u32],
+        [point, direction]: [DVec3; 2],
+        most: f64,
+    ) -> Option<(u32, DVec3)> {
+        let off = |t: u32| {
+            let normal = self.normals[t as usize];
+            (normal - direction).length().min((normal + direction).length())
+        };
+        let flat = self.around(vertices).into_iter().filter(|&t| off(t) <= most);
+        let feet = flat.map(|t| (t, nearest_point(point, &mesh.corners(t as usize))));
+        let away = |foot: DVec3| foot.distance_squared(point);
+        feet.min_by(|(_, x), (_, y)| away(*x).total_cmp(&away(*y)))
+    }
+
+    /// The triangles at some vertices, each once.
+    pub(crate) fn around(&self, vertices: &[u32]) -> Vec<u32> {
+        let mut triangles: Vec<u32> = vertices.iter().flat_map(|&v| self.at(v)).copied().collect();
+        triangles.sort_unstable();
+        triangles.dedup();
+        triangles
+    }
 }
 
-/// How far a point is from the hull of others, at most; exactly for one or two.
-fn to_hull(point: DVec3, others: &[DVec3]) -> f64 {
-    let mut simplex = Simplex::new(others[0] - point);
-    for other in &others[1..] {
-        simplex = simplex.with(*other - point).unwrap_or(simplex);
-    }
-    simplex.nearest().length()
+/// Exactly, but for rounding.
+fn to_segment(point: DVec3, [from, to]: [DVec3; 2]) -> f64 {
+    let nearest = Simplex::new(from - point);
+    nearest.with(to - point).unwrap_or(nearest).nearest().length()
+}
+
+/// The point of a triangle that is nearest to another one: of the triangle to rounding, the nearest of it by a guess.
+pub(crate) fn nearest_point(point: DVec3, corners: &[DVec3; 3]) -> DVec3 {
+    let [a, b, c] = *corners;
+    let weights = closest_weights(point, corners);
+    a + (b - a) * weights[1] + (c - a) * weights[2]
 }
 
 /// The vertices of the features of A and of B.

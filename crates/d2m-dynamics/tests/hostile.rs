@@ -309,6 +309,33 @@ fn a_press_crushes_only_what_has_no_room() {
     }
 }
 
+/// A press on boxes of the same size on each other, that goes a hundredth of a gap too far: they are crushed when no room is left, though the
+/// corners of each could slip off those of the next one.
+#[test]
+fn columns_of_equal_boxes_are_crushed() {
+    for count in [2, 3] {
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        simulation.add(&floor(1.0).with_friction(0.3)).unwrap();
+        let cube = tree("box?x=0.3&y=0.3&z=0.3");
+        for k in 0..count {
+            let place = DVec3::Y * (0.301 + 0.601 * f64::from(k));
+            simulation.add(&Body::new(format!("box {k}"), Arc::clone(&cube)).with_position(place)).unwrap();
+        }
+        let high = 0.6 * f64::from(count);
+        let press = pushed("press", "box?x=1&y=0.2&z=1", DVec3::Y * (high + 0.7), DVec3::Y * (-0.5 - 1e-5));
+        simulation.add(&press).unwrap();
+        let error = loop {
+            match simulation.step() {
+                Ok(report) => assert!(report.segments.iter().all(|segment| segment.skipped == 0.0)),
+                Err(error) => break error,
+            }
+        };
+        let StepError::Crushed { time, .. } = error else { panic!("{error:?}") };
+        let end = 0.5 / (0.5 + 1e-5);
+        assert!(time > end - 1e-8 && time <= end, "{count}: {time}, {end}");
+    }
+}
+
 /// A press that stops just where a box has no room left: rounding decides, and no proof is found. Nothing is claimed then.
 #[test]
 fn what_rounding_decides_is_not_called_crushed() {

@@ -31,7 +31,8 @@
 //! ```
 //!
 //! and n τ is at most 1/32. Seen from one body a closest point of the other one moves no faster than (V_a + V_b) (1 + n τ) + n d, less than that.
-//! It cannot leave what is flat and goes on by that around the other one's: it is on the outer side of it until the bodies meet. Nor can two edges pass each other while the points where they are closest are between their ends. These points move along
+//! It cannot leave what is flat and goes on by that around the other one's: it is on the outer side of it until the bodies meet. That is so of
+//! any point of a surface over a flat part of the other one, closest or not. Nor can two edges pass each other while the points where they are closest are between their ends. These points move along
 //! the edges, with directions u and w, by
 //!
 //! ```text

@@ -1,7 +1,7 @@
 //! Bodies that can go no further in a step stand still until its end.
 
 use super::event::Event;
-use super::slide::slide;
+use super::slide::{Sliding, slidings};
 use super::{Key, Step};
 use crate::StepError;
 use crate::contact::{ContactPoint, NEAR, SolverBody, Squeeze};
@@ -115,9 +115,9 @@ impl Step<'_> {
 
     /// The contacts within the gap or so of all that they connect with the bodies of some events, as they are at a time of the flights, with
     /// what each may slide; those whose direction turns by itself prove nothing.
-    fn connected_contacts(&mut self, time: f64, events: &[Event]) -> Vec<(ContactPoint, f64)> {
+    fn connected_contacts(&mut self, time: f64, events: &[Event]) -> Vec<Sliding> {
         let mut ring: Vec<usize> = events.iter().flat_map(|event| event.bodies).collect();
-        let (mut seen, mut found) = (BTreeSet::new(), BTreeMap::<Key, Vec<(ContactPoint, f64)>>::new());
+        let (mut seen, mut found) = (BTreeSet::new(), BTreeMap::<Key, Vec<Sliding>>::new());
         while !ring.is_empty() {
             ring.retain(|&i| self.sim.bodies[i].is_dynamic() && seen.insert(i));
             let keys = self.partners(&ring);
@@ -132,14 +132,14 @@ impl Step<'_> {
                 // What is too close to be measured is no part of a proof.
                 let measured =
                     measure(&sim.bodies, key, time, AROUND * gap, gap, material, &[]).unwrap_or_default();
-                let mut contacts = measured.contacts;
-                contacts.retain(|contact| contact.distance <= NEAR * gap);
+                let is_near = |contact: &ContactPoint| contact.distance <= NEAR * gap;
+                let contacts: Vec<ContactPoint> = measured.contacts.into_iter().filter(is_near).collect();
                 if !contacts.is_empty() {
                     ring.extend([key.0, key.1]);
                 }
                 let bodies = [&sim.bodies[key.0], &sim.bodies[key.1]];
-                let with_slide = |contact| slide(&contact, bodies, time).map(|slide| (contact, slide));
-                found.insert(key, contacts.into_iter().filter_map(with_slide).collect());
+                let slidings = contacts.iter().flat_map(|contact| slidings(contact, bodies, time));
+                found.insert(key, slidings.filter(|(contact, _)| is_near(contact)).collect());
             }
         }
         found.into_values().flatten().collect()

@@ -1,16 +1,73 @@
-//! How far closest points may slide on their features until they may slip off.
+//! How far closest points may slide on their features until they may slip off, and which points beside them may further.
 
 use crate::contact::{ASKEW, CROSSING, ContactPoint, LEVER, ROUNDED};
-use crate::faces::vertices_of;
+use crate::faces::{nearest_point, vertices_of};
 use crate::rigid_body::RigidBody;
 use d2m_feature::FeaturePair;
+use glam::DVec3;
+
+/// The part of the way to the corners and the middle of a triangle by which points beside a closest one are off it, 2⁻⁸: where that way is as long
+/// as an arm, 16 times what bodies move while they are proven to be crushed.
+const BESIDE: f64 = 1.0 / (1u64 << 8) as f64;
+
+/// By how much a direction may be off that of a face, half of what is proven for: the other half is for rounding.
+const MOST: f64 = 0.5 * ASKEW;
+
+/// A contact, and how far the bodies of it may move against each other, up to which its direction turns no faster than they do and its features stay
+/// those that keep its points apart.
+pub(super) type Sliding = (ContactPoint, f64);
+
+/// A contact with what it may slide, where its direction is that of a face or across edges, and points of one surface beside it over a flat part of
+/// the other one that may slide more: where faces of the same size lie on each other, the closest points of their corners may slip off at once, but
+/// those a little further in not.
+pub(super) fn slidings(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) -> Vec<Sliding> {
+    let own = slide(contact, bodies, time);
+    let mut found: Vec<Sliding> = own.map(|slide| (*contact, slide)).into_iter().collect();
+    let least = 2.0 * own.unwrap_or(0.0);
+    found.extend(beside(contact, bodies, time).into_iter().filter(|(_, slide)| *slide > least));
+    found
+}
+
+/// Points of each surface near a contact over a flat part of the other one, on the side of it that the contact is on, by more than rounding.
+fn beside(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) -> Vec<Sliding> {
+    let meshes = bodies.map(|body| body.tree.mesh());
+    let features = vertices_of(contact.feature, meshes);
+    let poses = bodies.map(|body| body.pose_at(time));
+    let radii = bodies[0].rounding + bodies[1].rounding;
+    // Over body k.
+    let over = |point: DVec3, k: usize| {
+        let local = poses[k].inverse_transform_point(point);
+        // From the flat part to the other body.
+        let out = poses[k].rotation.conjugate() * if k == 0 { contact.normal } else { -contact.normal };
+        let (triangle, foot) = bodies[k].faces.below(meshes[k], &features[k], [local, out], MOST)?;
+        let sizes = meshes[k].corners(triangle as usize).map(DVec3::length);
+        let rounded = ROUNDED * (sizes.into_iter().fold(local.length(), f64::max) + point.length());
+        let room = bodies[k].faces.flat_around(meshes[k], &features[k], [foot, out], [MOST, rounded])?;
+        let apart = foot.distance(local) - radii + rounded;
+        let is_out = out.dot(local - foot) > rounded + radii;
+        let middle = 0.5 * (point + poses[k].transform_point(foot));
+        let [arm_a, arm_b] = poses.map(|pose| middle - pose.translation);
+        let feature = FeaturePair::VertexFace { vertex: features[1 - k][0], face: triangle };
+        let moved = ContactPoint { feature, distance: apart, arm_a, arm_b, point: middle, ..*contact };
+        is_out.then_some((moved, room))
+    };
+    let mut found = Vec::new();
+    for (k, other) in [(0, 1), (1, 0)] {
+        for triangle in bodies[other].faces.around(&features[other]) {
+            let corners = meshes[other].corners(triangle as usize);
+            let nearest = nearest_point(poses[other].inverse_transform_point(contact.point), &corners);
+            let [a, b, c] = corners;
+            let points = [a, b, c, (a + b + c) / 3.0].map(|to| nearest + (to - nearest) * BESIDE);
+            found.extend(points.iter().filter_map(|&p| over(poses[other].transform_point(p), k)));
+        }
+    }
+    found
+}
 
 /// How far the bodies of a contact may move against each other, up to which its direction turns no faster than they do and its features stay those
 /// that are closest: as far as the flat part of the surface below it goes on, or, across two edges that cross at no small angle, the part of
 /// [`LEVER`] of what is left of them. None: the direction is none of a face or of two such edges, as that between two corners, which turns anyhow.
-pub(super) fn slide(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) -> Option<f64> {
-    // Half of it is for rounding.
-    let most = 0.5 * ASKEW;
+fn slide(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) -> Option<f64> {
     let meshes = bodies.map(|body| body.tree.mesh());
     let features = vertices_of(contact.feature, meshes);
     let poses = bodies.map(|body| body.pose_at(time));
@@ -21,7 +78,7 @@ pub(super) fn slide(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) 
         let inward = [-1.0, 1.0][k] * (0.5 * contact.distance + bodies[k].rounding);
         let point = local[k] + direction * inward;
         let size = contact.size() + point.length() + bodies[k].rounding;
-        let off = [most, ROUNDED * size + most * contact.distance];
+        let off = [MOST, ROUNDED * size + MOST * contact.distance];
         bodies[k].faces.flat_around(meshes[k], &features[k], [point, direction], off)
     };
     let across_edges = || {
@@ -29,7 +86,7 @@ pub(super) fn slide(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) 
         let edge = |k: usize| poses[k].rotation * (ends(k)[1] - ends(k)[0]).normalize_or_zero();
         let across = edge(0).cross(edge(1));
         let along = contact.normal * across.dot(contact.normal).signum();
-        let is_steady = across.length() >= CROSSING && (across.normalize_or_zero() - along).length() <= most;
+        let is_steady = across.length() >= CROSSING && (across.normalize_or_zero() - along).length() <= MOST;
         let left = (0..2).flat_map(|k| ends(k).map(|end| end.distance(local[k]) - contact.distance));
         is_steady.then(|| left.fold(f64::INFINITY, f64::min) / LEVER)
     };
@@ -64,11 +121,15 @@ mod tests {
             .unwrap()
     }
 
-    fn slides(bodies: &[RigidBody; 2]) -> Vec<Option<f64>> {
+    fn contacts(bodies: &[RigidBody; 2]) -> Vec<ContactPoint> {
         let material = Material { restitution: 0.0, friction: 0.5 };
         let contacts = measure(bodies, (0, 1), 0.0, AROUND * GAP, GAP, material, &[]).unwrap().contacts;
         assert!(!contacts.is_empty());
-        contacts.iter().map(|contact| slide(contact, [&bodies[0], &bodies[1]], 0.0)).collect()
+        contacts
+    }
+
+    fn slides(bodies: &[RigidBody; 2]) -> Vec<Option<f64>> {
+        contacts(bodies).iter().map(|contact| slide(contact, [&bodies[0], &bodies[1]], 0.0)).collect()
     }
 
     /// A bar with an edge on top, and one across it, or almost along it, whose lowest edge is a gap above: they cross in their middles, or at 0.3 from
@@ -107,6 +168,36 @@ mod tests {
                 slides.iter().all(Option::is_some) && found >= least && found <= most,
                 "{middle}: {slides:?}"
             );
+        }
+    }
+
+    /// A box on one of the same size, upright and leaning: points beside each corner may slide by some of the way that they are off it, at the
+    /// distance that the leaning face has there. Behind the face, as seen along a direction that points into it, there are none.
+    #[test]
+    fn points_beside_corners_of_equal_faces_may_slide() {
+        let cube = "box?x=0.5&y=0.5&z=0.5";
+        for lean in [0.0f64, 2e-4] {
+            // The lowest corners are a gap above.
+            let height = 1.0 + GAP + 0.5 * lean - 0.25 * lean * lean;
+            let turn = DQuat::from_rotation_z(lean);
+            let bodies = [body(cube, DVec3::ZERO, DQuat::IDENTITY), body(cube, DVec3::Y * height, turn)];
+            let both = [&bodies[0], &bodies[1]];
+            let on_faces = contacts(&bodies).into_iter().filter_map(|c| Some((c, slide(&c, both, 0.0)?)));
+            let on_faces: Vec<_> = on_faces.collect();
+            assert!(!on_faces.is_empty());
+            for (contact, own) in on_faces {
+                assert!(own < 1e-3, "{own:?}");
+                let mut found = slidings(&contact, both, 0.0);
+                found.retain(|(c, _)| c.distance < 2.0 * GAP);
+                let is_near = |c: &ContactPoint| c.point.distance(contact.point) < 2.0 * BESIDE;
+                assert!(found.iter().any(|(c, slide)| is_near(c) && *slide > 0.1 * BESIDE), "{found:?}");
+                for (c, slide) in found.iter().filter(|(_, slide)| *slide > 1e-4) {
+                    let apart = GAP + (c.point.x + 0.5) * lean;
+                    assert!(*slide < 0.26 && (c.distance - apart).abs() < 1e-12 + lean * lean, "{c:?}");
+                }
+                let behind = ContactPoint { normal: -contact.normal, ..contact };
+                assert!(beside(&behind, both, 0.0).is_empty());
+            }
         }
     }
 }
