@@ -1,12 +1,13 @@
 //! Many queries at once.
 
+use super::kept_motion::KeptMotions;
 use super::time_of_contact::time_of_contact;
 use crate::{Moving, QueryError, QueryOptions, TimeOfContact, Window};
 use d2m_mesh::parallel::map_in_order;
 
 /// [`time_of_contact`] of many pairs of bodies, in order. On all threads of the current rayon pool with the feature
 /// `rayon`; each query runs on one thread, so the answers have the same bits at any number of threads (but for a
-/// budget of wall-clock time). When somebody cancels, the queries that have not begun end undecided, whatever their input.
+/// budget of wall-clock time). What is computed of a motion that several bodies have – the same reference – is kept for all of them. When somebody cancels, the queries that have not begun end undecided, whatever their input.
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, Moving, QueryOptions, TriMesh, Window, time_of_contact_batch};
@@ -35,5 +36,6 @@ pub fn time_of_contact_batch(
         }
         time_of_contact(a, b, window, options)
     };
-    map_in_order(pairs, 1, one)
+    let kept = KeptMotions::new(pairs);
+    map_in_order(&kept.in_pairs(pairs), 1, one)
 }

@@ -8,6 +8,7 @@ mod concluded;
 mod constant_twist;
 mod fitted_twist;
 mod general_motion;
+mod kept_motion;
 mod leave;
 mod meshes;
 mod report;

@@ -1,6 +1,11 @@
-//! `d2m batch` from the file of trials to the file of answers: the same flights in each form of motion that a line may have.
+//! `d2m batch` from the file of trials to the file of answers: the same flights in each form of motion that a line may have; and batches
+//! of the library against their queries one by one.
+use super::scenes::{BusyFigure, Target, threads, wrong};
 use crate::TaskResult;
 use crate::trials::{Law, Movement, Trial, generate, write};
+use d2m::bvh::MeshTree;
+use d2m::motion::{ConstantTwist, Pose, RigidMotion, Spline, SplineDegree};
+use d2m::{Moving, QueryError, QueryOptions, TimeOfContact, Window, time_of_contact, time_of_contact_batch};
 use glam::{DQuat, DVec3};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -16,6 +21,11 @@ const POSES: u32 = 9;
 /// Forms of one flight differ by the rounding of poses, and each answer is within its tolerance (1e-10 of the length, at speeds that
 /// are at least a tenth of the trials').
 const SAME_TIME: f64 = 1e-7;
+
+/// What a thread of a batch is to do, in parts of what it does with single queries.
+const LEAST_PER_THREAD: f64 = 0.95;
+/// How often single queries and batches are measured in turn, times the rounds.
+const TURNS: usize = 4;
 
 /// A form in which a motion is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -179,5 +189,80 @@ pub(super) fn run(rounds: usize) -> TaskResult {
         }
         print(name, whole, &found);
     }
+    per_thread(rounds, &flights, &expected)
+}
+
+/// The same flights in the library: what a thread of a batch does, over what one does with single queries. Of splines, whose body B moves alike in
+/// all of them, too.
+fn per_thread(rounds: usize, flights: &[Trial], expected: &[Answer]) -> TaskResult {
+    let tree = MeshTree::new(d2m::shapes::mesh("gear")?);
+    let twist = |m: &Movement| ConstantTwist::try_new(m.position, m.rotation, m.velocity, m.angular_velocity);
+    let twists: Vec<[ConstantTwist; 2]> = flights
+        .iter()
+        .map(|flight| Ok([twist(&flight.a)?, twist(&flight.b)?]))
+        .collect::<Result<_, d2m::motion::MotionError>>()?;
+    let pairs: Vec<Pair<'_>> =
+        twists.iter().map(|[a, b]| (Moving::new(&tree, a), Moving::new(&tree, b))).collect();
+    let answers = row(rounds, "constant twists", &pairs)?;
+    for (k, (answer, expected)) in answers.iter().zip(expected).enumerate() {
+        let time = answer.as_ref().ok().and_then(TimeOfContact::contact).map_or(f64::INFINITY, |c| c.time_lo);
+        if time != expected.time && (time - expected.time).abs() > SAME_TIME {
+            return Err(wrong(&format!("flight {} at {time}, and {} by the command", k + 1, expected.time)));
+        }
+    }
+    let splines: Vec<Spline> =
+        twists.iter().map(|[a, _]| spline(a)).collect::<Result<_, d2m::motion::MotionError>>()?;
+    let common = &spline(&twists[0][1])?;
+    let pairs: Vec<Pair<'_>> =
+        splines.iter().map(|a| (Moving::new(&tree, a), Moving::new(&tree, common))).collect();
+    row(rounds, "splines, against one", &pairs)?;
     Ok(())
+}
+
+type Pair<'a> = (Moving<'a>, Moving<'a>);
+
+/// Through five of its poses.
+fn spline(twist: &ConstantTwist) -> Result<Spline, d2m::motion::MotionError> {
+    let frames: Vec<(f64, Pose)> =
+        [0.0, 0.25, 0.5, 0.75, 1.0].map(|time| (time, twist.pose_and_twist(time).0)).into();
+    Spline::try_through(&frames, SplineDegree::Cubic)
+}
+
+/// One thread and two, in turn with single queries; the answers.
+fn row(
+    rounds: usize,
+    name: &str,
+    pairs: &[Pair<'_>],
+) -> Result<Vec<Result<TimeOfContact, QueryError>>, Error> {
+    let options = QueryOptions::default();
+    let single = || pairs.iter().map(|&(a, b)| time_of_contact(a, b, Window::UNIT, &options)).collect();
+    let expected: Vec<_> = single();
+    for count in [1, 2] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build()?;
+        let mut least = [[f64::INFINITY; 2]; 2];
+        let (mut waiting, mut wall) = (0.0, 0.0);
+        for _ in 0..TURNS * rounds {
+            let (alone, _) = threads::measure(|| std::hint::black_box(single()));
+            let (together, found) =
+                threads::measure(|| pool.install(|| time_of_contact_batch(pairs, Window::UNIT, &options)));
+            if found != expected {
+                return Err(wrong("a batch gives other bits than single queries"));
+            }
+            for (least, cost) in least.iter_mut().zip([&alone, &together]) {
+                *least = [least[0].min(cost.wall), least[1].min(cost.busiest)];
+                (waiting, wall) = (waiting + cost.waiting, wall + cost.wall);
+            }
+        }
+        let part = |clock: usize| least[0][clock] / (least[1][clock] * count as f64);
+        BusyFigure {
+            what: format!("batch of {name}, {count} threads: queries a thread over single ones"),
+            value: part(0),
+            by_processor: part(1),
+            unit: "times",
+            target: Target::AtLeast(LEAST_PER_THREAD),
+            waited: waiting / wall,
+        }
+        .print();
+    }
+    Ok(expected)
 }

@@ -45,7 +45,7 @@ enum Only {
     Series,
     /// Many bodies, bodies at rest, saved trees; some minutes.
     Scenes,
-    /// `d2m batch` with each form of motion, from file to file; a minute.
+    /// `d2m batch` with each form of motion, from file to file, and what a thread of a batch does against single queries; a minute.
     Batch,
     /// How near bodies come that stay apart, against a query that finds only that; on the pairs, a minute.
     Clearances,

@@ -15,6 +15,7 @@ mod way;
 pub use options::{Clearance, ClearanceOptions, ClearanceStatus};
 
 use super::general_motion::tolerance_of;
+use super::kept_motion::KeptMotions;
 use super::meshes::of_meshes;
 use super::rounded::Rounded;
 use crate::covered_pair::CoveredPair;
@@ -111,7 +112,8 @@ pub fn clearance_batch(
     options: &ClearanceOptions,
 ) -> Vec<Result<Clearance, QueryError>> {
     let one = |&(a, b): &(Moving<'_>, Moving<'_>)| clearance(a, b, window, options);
-    map_in_order(pairs, 1, one)
+    let kept = KeptMotions::new(pairs);
+    map_in_order(&kept.in_pairs(pairs), 1, one)
 }
 
 /// The hard cap on one search holds for all of them together.

@@ -1,7 +1,7 @@
 //! Many bodies, and bodies at rest: a row for each figure that scenes are to reach, each answer checked before its time counts.
 mod distances;
 mod saved;
-mod threads;
+pub(super) mod threads;
 pub(super) mod trees;
 mod worlds;
 
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 /// What a figure should be.
 #[derive(Clone, Copy)]
-enum Target {
+pub(super) enum Target {
     AtMost(f64),
     AtLeast(f64),
     /// Nothing is asked.
@@ -50,21 +50,21 @@ fn figure(what: impl Into<String>, value: f64, unit: &'static str, target: Targe
 const BUSY: f64 = 0.02;
 
 /// A figure that depends on a machine without other work.
-struct BusyFigure {
-    what: String,
+pub(super) struct BusyFigure {
+    pub(super) what: String,
     /// On the clock.
-    value: f64,
+    pub(super) value: f64,
     /// The same by the processor time of the thread that works most.
-    by_processor: f64,
-    unit: &'static str,
-    target: Target,
+    pub(super) by_processor: f64,
+    pub(super) unit: &'static str,
+    pub(super) target: Target,
     /// For which part of the time threads of this process waited for a processor.
-    waited: f64,
+    pub(super) waited: f64,
 }
 
 impl BusyFigure {
     /// Processor time is compared with what is wanted where other work makes threads wait.
-    fn print(self) {
+    pub(super) fn print(self) {
         let Self { what, value, by_processor, unit, target, waited } = self;
         if waited <= BUSY {
             return figure(what, value, unit, target);
@@ -127,6 +127,6 @@ pub(super) fn run(rounds: usize) -> TaskResult {
 }
 
 /// An answer that is not right: its time does not count.
-fn wrong(what: &str) -> Box<dyn std::error::Error> {
+pub(super) fn wrong(what: &str) -> Box<dyn std::error::Error> {
     format!("wrong answer: {what}").into()
 }

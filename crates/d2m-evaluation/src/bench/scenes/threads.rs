@@ -37,14 +37,14 @@ impl Threads {
 
 /// What one piece of work has cost, in seconds.
 #[derive(Clone, Copy)]
-pub(super) struct Cost {
-    pub(super) wall: f64,
+pub(in crate::bench) struct Cost {
+    pub(in crate::bench) wall: f64,
     /// Processor time of the thread that worked most.
-    pub(super) busiest: f64,
-    pub(super) waiting: f64,
+    pub(in crate::bench) busiest: f64,
+    pub(in crate::bench) waiting: f64,
 }
 
-pub(super) fn measure<T>(work: impl FnOnce() -> T) -> (Cost, T) {
+pub(in crate::bench) fn measure<T>(work: impl FnOnce() -> T) -> (Cost, T) {
     let before = Threads::now();
     let start = Instant::now();
     let answer = work();
