@@ -95,6 +95,19 @@ impl<R: Registers> Lanes for Avx<R> {
         out
     }
     #[inline(always)]
+    fn narrowed([low, high]: [AvxDoubles<R>; 2]) -> Self {
+        // SAFETY: the processor has AVX (see the type).
+        Self::wrap(unsafe { _mm256_set_m128(_mm256_cvtpd_ps(high.0), _mm256_cvtpd_ps(low.0)) })
+    }
+    #[inline(always)]
+    fn widened(self) -> [AvxDoubles<R>; 2] {
+        // SAFETY: the processor has AVX (see the type).
+        unsafe {
+            let (low, high) = (_mm256_castps256_ps128(self.0), _mm256_extractf128_ps::<1>(self.0));
+            [AvxDoubles::wrap(_mm256_cvtps_pd(low)), AvxDoubles::wrap(_mm256_cvtps_pd(high))]
+        }
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         // SAFETY: the processor has AVX (see the type).
         Self::wrap(unsafe { _mm256_sqrt_ps(self.0) })

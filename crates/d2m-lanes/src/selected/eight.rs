@@ -63,6 +63,10 @@ pub trait Lanes: Bytes + Div<Output = Self> {
     fn load(values: &[f32; 8]) -> Self;
     /// Lanes to memory.
     fn store(self) -> [f32; 8];
+    /// The first four lanes and the last four, each rounded to `f32`.
+    fn narrowed(halves: [Self::Doubles; 2]) -> Self;
+    /// The first four lanes and the last four, exactly.
+    fn widened(self) -> [Self::Doubles; 2];
     /// Correctly rounded square root.
     fn sqrt(self) -> Self;
     /// Bit i is set when lane i of `self` is less than lane i of `other`.

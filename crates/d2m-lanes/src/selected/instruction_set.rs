@@ -31,6 +31,10 @@ pub enum InstructionSet {
 
 const ALL: [InstructionSet; 3] = [InstructionSet::Portable, InstructionSet::Avx2, InstructionSet::Avx512];
 
+/// Index into [`ALL`] of the best one of this processor, once it is known.
+static FOUND: AtomicU8 = AtomicU8::new(UNKNOWN);
+const UNKNOWN: u8 = u8::MAX;
+
 /// Index into [`ALL`].
 static LIMIT: AtomicU8 = AtomicU8::new(2);
 
@@ -55,6 +59,18 @@ impl InstructionSet {
     /// The best one of this processor.
     #[inline]
     pub(super) fn best() -> Self {
+        match FOUND.load(Ordering::Relaxed) {
+            UNKNOWN => {
+                let best = Self::find();
+                FOUND.store(best as u8, Ordering::Relaxed);
+                best
+            }
+            found => ALL[usize::from(found)],
+        }
+    }
+
+    #[cold]
+    fn find() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
             use std::arch::is_x86_feature_detected as has;

@@ -1,6 +1,7 @@
 //! The lanes that every target has: in vector registers where its plainest processor has some.
 
 use super::eight::{Keys, Lanes, Rows, SingleSide, WideSide};
+use super::quad::Doubles;
 use super::two::{Both, Bytes, Elementwise};
 use crate::F64x4;
 use core::ops::{Add, Div, Mul, Sub};
@@ -76,6 +77,17 @@ impl Lanes for Portable {
     #[inline(always)]
     fn store(self) -> [f32; 8] {
         self.0.to_array()
+    }
+    #[inline(always)]
+    fn narrowed([low, high]: [F64x4; 2]) -> Self {
+        let ([a, b, c, d], [e, f, g, h]) = (Doubles::narrow(low), Doubles::narrow(high));
+        Self(f32x8::new([a, b, c, d, e, f, g, h]))
+    }
+    #[inline(always)]
+    fn widened(self) -> [F64x4; 2] {
+        let [a, b, c, d, e, f, g, h] = self.0.to_array();
+        let wide = |v: [f32; 4]| F64x4::new([v[0].into(), v[1].into(), v[2].into(), v[3].into()]);
+        [wide([a, b, c, d]), wide([e, f, g, h])]
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

@@ -78,24 +78,23 @@ impl TriMesh {
         if triangles.is_empty() {
             return Err(MeshError::NoTriangles);
         }
-        for (vertex, position) in vertices.iter().enumerate() {
-            for (axis, value) in ['x', 'y', 'z'].into_iter().zip(position.to_array()) {
-                if !value.is_finite() {
-                    return Err(MeshError::NonFiniteVertex { vertex, axis, value });
-                }
-                if value.abs() > MAX_COORDINATE {
-                    return Err(MeshError::VertexTooLarge { vertex, axis, value });
-                }
-            }
-        }
-        for (triangle, corners) in triangles.iter().enumerate() {
-            for &index in corners {
-                if index as usize >= vertices.len() {
-                    return Err(MeshError::IndexOutOfRange { triangle, index, vertex_count: vertices.len() });
-                }
-            }
-        }
+        check_positions(&vertices)?;
+        check_indices(&triangles, vertices.len())?;
         Ok(Self { vertices, triangles })
+    }
+
+    /// The same triangles with other vertices, checked as by [`Self::try_new`]. They are taken out of this mesh, where there is no error.
+    pub(crate) fn try_move(&mut self, vertices: Vec<DVec3>) -> Result<Self, MeshError> {
+        let count = vertices.len();
+        if count > u32::MAX as usize {
+            return Err(MeshError::TooMany { what: "vertices", count });
+        }
+        check_positions(&vertices)?;
+        // Indices of the vertices until now are in range.
+        if count < self.vertices.len() {
+            check_indices(&self.triangles, count)?;
+        }
+        Ok(Self { vertices, triangles: core::mem::take(&mut self.triangles) })
     }
 
     /// Copies a mesh from plain arrays, checked as by [`TriMesh::try_new`].
@@ -227,4 +226,29 @@ impl From<TriMesh> for Parts {
         let exact = |vertex: DVec3| vertex.to_array().map(super::ExactNumber);
         Self { vertices: vertices.into_iter().map(exact).collect(), triangles }
     }
+}
+
+fn check_positions(vertices: &[DVec3]) -> Result<(), MeshError> {
+    for (vertex, position) in vertices.iter().enumerate() {
+        for (axis, value) in ['x', 'y', 'z'].into_iter().zip(position.to_array()) {
+            if !value.is_finite() {
+                return Err(MeshError::NonFiniteVertex { vertex, axis, value });
+            }
+            if value.abs() > MAX_COORDINATE {
+                return Err(MeshError::VertexTooLarge { vertex, axis, value });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_indices(triangles: &[[u32; 3]], vertex_count: usize) -> Result<(), MeshError> {
+    for (triangle, corners) in triangles.iter().enumerate() {
+        for &index in corners {
+            if index as usize >= vertex_count {
+                return Err(MeshError::IndexOutOfRange { triangle, index, vertex_count });
+            }
+        }
+    }
+    Ok(())
 }

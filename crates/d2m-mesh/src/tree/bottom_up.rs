@@ -46,6 +46,17 @@ pub(super) struct Scratch {
     list: u32,
 }
 
+impl Scratch {
+    /// A number that no vertex of so many has.
+    fn next_list(&mut self, vertices: usize) -> u32 {
+        if self.lists.is_empty() {
+            self.lists.resize(vertices, 0);
+        }
+        self.list += 1;
+        self.list
+    }
+}
+
 /// Fits the boxes of one tree.
 pub(super) struct Fitting<'a> {
     surface: &'a Surface<'a>,
@@ -107,7 +118,7 @@ impl<'a> Fitting<'a> {
         node: &mut WideNode,
         scratch: &mut Scratch,
     ) -> Moments {
-        let Scratch { rows, taken, lists, list, .. } = scratch;
+        let Scratch { rows, taken, .. } = &mut *scratch;
         let mut parts: [&[u32]; WIDTH] = [&[]; WIDTH];
         for lane in 0..lanes.used {
             parts[lane] = &taken[lanes.ends[lane]..lanes.ends[lane + 1]];
@@ -122,20 +133,57 @@ impl<'a> Fitting<'a> {
             rows,
             node,
         });
-        if lists.is_empty() {
-            lists.resize(self.surface.points.len(), 0);
-        }
-        *list += 1;
+        let list = scratch.next_list(self.surface.points.len());
+        let Scratch { taken, lists, .. } = scratch;
         let start = lanes.ends[0];
-        let mut kept = start;
-        for k in start..taken.len() {
-            let vertex = taken[k];
-            taken[kept] = vertex;
+        let mut kept = 0;
+        let vertices = &mut taken[start..];
+        for k in 0..vertices.len() {
+            let vertex = vertices[k];
+            vertices[kept] = vertex;
             let last = &mut lists[vertex as usize];
-            kept += usize::from(*last != *list);
-            *last = *list;
+            kept += usize::from(*last != list);
+            *last = list;
         }
-        taken.truncate(kept);
+        taken.truncate(start + kept);
+        moments
+    }
+
+    /// The same of a node of which each lane is a triangle.
+    pub(super) fn node_of_triangles(
+        &self,
+        triangles: &[u32],
+        parent: u32,
+        node: &mut WideNode,
+        scratch: &mut Scratch,
+    ) -> Moments {
+        let mut parts: [&[u32]; WIDTH] = [&[]; WIDTH];
+        let mut below = [Below::Triangle(0); WIDTH];
+        for (lane, &triangle) in triangles.iter().enumerate() {
+            parts[lane] = &self.surface.triangles[triangle as usize];
+            below[lane] = Below::Triangle(triangle);
+        }
+        let parts = &parts[..triangles.len()];
+        let moments = run(Siblings {
+            points: &self.surface.points,
+            parts,
+            below: &below[..triangles.len()],
+            // Those of triangles are computed with their boxes.
+            moments: &mut [],
+            origin: None,
+            parent,
+            rows: &mut scratch.rows,
+            node,
+        });
+        let list = scratch.next_list(self.surface.points.len());
+        let (mut vertices, mut kept) = ([0; 3 * WIDTH], 0);
+        for &vertex in parts.iter().copied().flatten() {
+            vertices[kept] = vertex;
+            let last = &mut scratch.lists[vertex as usize];
+            kept += usize::from(*last != list);
+            *last = list;
+        }
+        scratch.taken.extend_from_slice(&vertices[..kept]);
         moments
     }
 

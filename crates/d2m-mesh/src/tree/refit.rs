@@ -3,10 +3,10 @@
 use super::bottom_up::{Fitting, Lanes, Place, Scratch, Subtree};
 use super::fit::Moments;
 use super::mesh_tree::MeshTree;
-use super::node::{Below, WideNode};
+use super::node::{Below, LEAF, WideNode};
 use super::surface::{Extent, Surface};
+use crate::MeshError;
 use crate::parallel::{both, both_of_many};
-use crate::{MeshError, TriMesh};
 use glam::DVec3;
 
 impl MeshTree {
@@ -29,7 +29,7 @@ impl MeshTree {
     /// # Errors
     /// As [`TriMesh::try_new`]; the tree is then unchanged. Surplus vertices are allowed.
     pub fn refit(&mut self, vertices: Vec<DVec3>) -> Result<(), MeshError> {
-        let mesh = TriMesh::try_new(vertices, self.mesh.triangles().to_vec())?;
+        let mesh = self.mesh.try_move(vertices)?;
         let extent = Extent::of(&mesh);
         let surface = Surface::new(&mesh, &extent);
         let before = self.closedness();
@@ -118,6 +118,12 @@ impl Refit<'_> {
             Below::Node(index) => (index - first) as usize,
         };
         let (used, parent) = (nodes[index].used as usize, nodes[index].parent);
+        let children = nodes[index].child;
+        if children[..used].iter().all(|child| child & LEAF != 0) {
+            let triangles = children.map(|child| child & !LEAF);
+            let node = &mut nodes[index];
+            return (below, self.fitting.node_of_triangles(&triangles[..used], parent, node, scratch));
+        }
         let mut lanes = Lanes::new(scratch);
         for lane in 0..used {
             let (below, moments) = self.lane(nodes[index].below(lane), nodes, first, scratch);

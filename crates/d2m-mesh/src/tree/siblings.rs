@@ -12,6 +12,7 @@ use super::node::{Below, WIDTH, WideNode};
 use super::principal::principal_axes;
 use super::refine::{Axes, Row, refined, stride};
 use super::wide_boxes::{Boxes, HALF, WideReach, widened};
+
 use d2m_lanes::three::cross;
 use d2m_lanes::{Doubles, Elementwise, Lanes, Quad, Task};
 
@@ -54,10 +55,14 @@ impl Task for Siblings<'_> {
         if let (&[part], &[Below::Node(_)]) = (self.parts, self.below) {
             return self.fit_one::<L>(part);
         }
+        let is_triangle = self.is_triangle();
+        let all_lanes = (1 << self.parts.len()) - 1;
+        if is_triangle == all_lanes {
+            return self.fit_triangles::<L>();
+        }
         let mut lanes: [&[u32]; WIDTH] = [&[]; WIDTH];
         lanes[..self.parts.len()].copy_from_slice(self.parts);
-        self.gather(&lanes);
-        let is_triangle = self.is_triangle();
+        self.gather::<L::Doubles>(&lanes);
         let mut triangles = [[[0.0; WIDTH]; 3]; 2];
         if is_triangle != 0 {
             self.measure_triangles::<L>(is_triangle, &mut triangles);
@@ -67,12 +72,9 @@ impl Task for Siblings<'_> {
             all.add(moments);
         }
         let origin = self.origin_of(&all);
-        self.narrow::<L::Doubles>(origin);
-        let all_lanes = (1 << self.parts.len()) - 1;
-        let axes = if is_triangle == all_lanes { triangles } else { self.axes::<L>(is_triangle, &triangles) };
-        let mut boxes = self.boxes::<L>(origin, &axes, LanesAre::Boxes);
-        boxes.store(self.node, self.below, origin);
-        self.node.parent = self.parent;
+        self.narrow::<L>(origin);
+        let axes = self.axes::<L>(is_triangle, &triangles);
+        self.store::<L>(origin, &axes, LanesAre::Boxes);
         all
     }
 }
@@ -103,20 +105,18 @@ impl Siblings<'_> {
         let sample: Vec<u32> = part.iter().step_by(stride(part.len())).copied().collect();
         let mut lanes: [&[u32]; WIDTH] = [&[]; WIDTH];
         lanes[0] = &sample;
-        self.gather(&lanes);
-        self.narrow::<L::Doubles>(origin);
+        self.gather::<L::Doubles>(&lanes);
+        self.narrow::<L>(origin);
         let mut axes = self.axes::<L>(0, &[[[0.0; WIDTH]; 3]; 2]);
-        for row in axes.as_flattened_mut() {
-            *row = [row[0]; WIDTH];
+        for axis in axes.as_flattened_mut() {
+            *axis = L::splat(axis.store()[0]);
         }
         for (lane, points) in lanes.iter_mut().zip(part.chunks(part.len().div_ceil(WIDTH))) {
             *lane = points;
         }
-        self.gather(&lanes);
-        self.narrow::<L::Doubles>(origin);
-        let mut boxes = self.boxes::<L>(origin, &axes, LanesAre::PartsOfOne);
-        boxes.store(self.node, self.below, origin);
-        self.node.parent = self.parent;
+        self.gather::<L::Doubles>(&lanes);
+        self.narrow::<L>(origin);
+        self.store::<L>(origin, &axes, LanesAre::PartsOfOne);
         all
     }
 
@@ -132,7 +132,7 @@ impl Siblings<'_> {
 
     /// Puts the points of the lanes side by side; short lanes repeat a point, those without points that of the first lane.
     #[inline(always)]
-    fn gather(&mut self, lanes: &[&[u32]; WIDTH]) {
+    fn gather<D: Doubles<Scalar = f64>>(&mut self, lanes: &[&[u32]; WIDTH]) {
         let mut count = 0;
         for part in lanes {
             count = if part.len() > count { part.len() } else { count };
@@ -143,40 +143,35 @@ impl Siblings<'_> {
             rows.narrow.resize(count, [[0.0; WIDTH]; 3]);
         }
         rows.used = count;
-        let wide = &mut rows.wide[..count];
-        for lane in 0..WIDTH {
-            let part = lanes[lane];
-            let (half, place) = (lane / HALF, lane % HALF);
-            for (row, &vertex) in wide.iter_mut().zip(part) {
-                let p = &self.points[vertex as usize];
-                row.0[0][half].0[place] = p[0];
-                row.0[1][half].0[place] = p[1];
-                row.0[2][half].0[place] = p[2];
-            }
-            if part.len() == count {
-                continue;
-            }
-            let first = if part.is_empty() { lanes[0][0] } else { part[0] };
-            let p = self.points[first as usize];
-            for row in &mut wide[part.len()..] {
-                row.0[0][half].0[place] = p[0];
-                row.0[1][half].0[place] = p[1];
-                row.0[2][half].0[place] = p[2];
+        let mut parts = *lanes;
+        for part in &mut parts {
+            *part = if part.is_empty() { &lanes[0][..1] } else { part };
+        }
+        for (at, row) in rows.wide[..count].iter_mut().enumerate() {
+            for half in 0..2 {
+                let mut points = [&self.points[0]; HALF];
+                for place in 0..HALF {
+                    let part = parts[half * HALF + place];
+                    points[place] = &self.points[part[if at < part.len() { at } else { 0 }] as usize];
+                }
+                let columns = columns::<D>(points);
+                for k in 0..3 {
+                    row.0[k][half] = columns[k].store();
+                }
             }
         }
     }
 
     /// The same from the origin, in `f32`.
     #[inline(always)]
-    fn narrow<D: Doubles<Scalar = f64>>(&mut self, origin: [f32; 3]) {
+    fn narrow<L: Lanes>(&mut self, origin: [f32; 3]) {
         let Rows { wide, narrow, used } = &mut *self.rows;
         for (narrow, wide) in narrow[..*used].iter_mut().zip(&wide[..*used]) {
             for k in 0..3 {
-                let from = D::splat(f64::from(origin[k]));
-                for half in 0..2 {
-                    let from_origin = (D::load(&wide.0[k][half]) - from).narrow();
-                    narrow[k][half * HALF..][..HALF].copy_from_slice(&from_origin);
-                }
+                let from = L::Doubles::splat(f64::from(origin[k]));
+                let [low, high] = &wide.0[k];
+                narrow[k] =
+                    L::narrowed([L::Doubles::load(low) - from, L::Doubles::load(high) - from]).store();
             }
         }
     }
@@ -206,7 +201,7 @@ impl Siblings<'_> {
 
     /// Axes of parts of more than one triangle; those of triangles are given.
     #[inline(always)]
-    fn axes<L: Lanes>(&self, is_triangle: u32, triangles: &StoredAxes) -> StoredAxes {
+    fn axes<L: Lanes>(&self, is_triangle: u32, triangles: &StoredAxes) -> [[L; 3]; 2] {
         let mut matrices = [[0.0; WIDTH]; 6];
         for lane in 0..self.parts.len() {
             let covariance = self.moments[lane].covariance();
@@ -218,78 +213,70 @@ impl Siblings<'_> {
         for k in 0..6 {
             matrix[k] = L::load(&matrices[k]);
         }
-        let turned = refined(principal_axes(matrix), &self.rows.narrow[..self.rows.used]);
-        let mut stored = [[[0.0; WIDTH]; 3]; 2];
+        let [first, second, _] = refined(principal_axes(matrix), &self.rows.narrow[..self.rows.used]);
+        let ([a, b], [c, d]) = (widened(&first), widened(&second));
+        let axes = stored::<L>(&[frames(&a, &c), frames(&b, &d)]);
+        if is_triangle == 0 {
+            return axes;
+        }
+        let mut mixed = axes;
         for i in 0..2 {
             for k in 0..3 {
-                stored[i][k] = turned[i][k].store();
-            }
-        }
-        let mut axes = [[[0.0; WIDTH]; 3]; 2];
-        for half in 0..2 {
-            let mut pair = [[<L::Doubles as Elementwise>::splat(0.0); 3]; 2];
-            for i in 0..2 {
-                for k in 0..3 {
-                    pair[i][k] = <L::Doubles as Doubles>::load(&widened(&stored[i][k], half));
-                }
-            }
-            store_half(&frames(&pair[0], &pair[1]), half, &mut axes);
-        }
-        for i in 0..2 {
-            for k in 0..3 {
+                let mut lanes = axes[i][k].store();
                 for lane in 0..WIDTH {
                     if is_triangle >> lane & 1 == 1 {
-                        axes[i][k][lane] = triangles[i][k][lane];
+                        lanes[lane] = triangles[i][k][lane];
                     }
                 }
+                mixed[i][k] = L::load(&lanes);
             }
         }
-        axes
+        mixed
     }
 
-    /// The boxes with these axes.
+    /// Fits the boxes with these axes.
     #[inline(always)]
-    fn boxes<L: Lanes>(&self, origin: [f32; 3], axes: &StoredAxes, lanes: LanesAre) -> Boxes {
-        let axes = all_axes::<L>(axes);
-        let (center, about) = middle::<L>(&axes, &self.rows.narrow[..self.rows.used], lanes);
-        let mut boxes = Boxes {
-            center,
-            axes,
-            half_extent: [[0.0; WIDTH]; 3],
-            slabs: [[0.0; WIDTH]; 3],
-            radius: [0.0; WIDTH],
-        };
-        let [mut low, mut high] =
-            [self.reach_of::<L>(origin, &boxes, &about, 0), self.reach_of::<L>(origin, &boxes, &about, 1)];
+    fn store<L: Lanes>(&mut self, origin: [f32; 3], stored: &[[L; 3]; 2], lanes: LanesAre) {
+        let mut middle = Middle::new(all_axes(stored));
+        for row in &self.rows.narrow[..self.rows.used] {
+            middle.add(&[L::load(&row[0]), L::load(&row[1]), L::load(&row[2])]);
+        }
+        if lanes == LanesAre::PartsOfOne {
+            middle.join_all();
+        }
+        let (center, [mut low, mut high]) = middle.reaches(origin);
+        for row in &self.rows.wide[..self.rows.used] {
+            low.add(&[
+                L::Doubles::load(&row.0[0][0]),
+                L::Doubles::load(&row.0[1][0]),
+                L::Doubles::load(&row.0[2][0]),
+            ]);
+        }
+        for row in &self.rows.wide[..self.rows.used] {
+            high.add(&[
+                L::Doubles::load(&row.0[0][1]),
+                L::Doubles::load(&row.0[1][1]),
+                L::Doubles::load(&row.0[2][1]),
+            ]);
+        }
         if lanes == LanesAre::PartsOfOne {
             low.join_all(&high);
             high = low.clone();
         }
-        low.finish(&mut boxes, 0);
-        high.finish(&mut boxes, 1);
-        boxes
+        Boxes::around(center, middle.axes, &[low, high]).store(self.node, self.below, origin);
+        self.node.parent = self.parent;
     }
+}
 
-    /// How far the points in one half of the lanes reach.
-    #[inline(always)]
-    fn reach_of<L: Lanes>(
-        &self,
-        origin: [f32; 3],
-        boxes: &Boxes,
-        about: &[[f32; WIDTH]; 3],
-        half: usize,
-    ) -> WideReach<L::Doubles> {
-        let mut reach = WideReach::<L::Doubles>::new(origin, boxes, about, half);
-        for row in &self.rows.wide[..self.rows.used] {
-            let p = &row.0;
-            reach.add(&[
-                <L::Doubles as Doubles>::load(&p[0][half]),
-                <L::Doubles as Doubles>::load(&p[1][half]),
-                <L::Doubles as Doubles>::load(&p[2][half]),
-            ]);
-        }
-        reach
-    }
+/// Coordinates of four points, side by side.
+#[inline(always)]
+fn columns<D: Doubles>(points: [&[f64; 3]; HALF]) -> [D; 3] {
+    let [a, b, c, d] = points;
+    [
+        D::load(&Quad([a[0], b[0], c[0], d[0]])),
+        D::load(&Quad([a[1], b[1], c[1], d[1]])),
+        D::load(&Quad([a[2], b[2], c[2], d[2]])),
+    ]
 }
 
 /// The axes that are stored, as a node has them.
@@ -305,75 +292,97 @@ fn store_half<D: Doubles>(frames: &[[D; 3]; 2], half: usize, axes: &mut StoredAx
     }
 }
 
-/// The axes with the third ones, as whoever reads the boxes computes them; those of the coordinates for the one frame in some 10⁸
-/// that its roundings leave less orthonormal than boxes promise.
+/// The first two axes of frames as a node stores them, from both halves of its lanes.
 #[inline(always)]
-fn all_axes<L: Lanes>(stored: &StoredAxes) -> [[[f32; WIDTH]; 3]; 3] {
-    let [a, b] = stored;
-    let first = [L::load(&a[0]), L::load(&a[1]), L::load(&a[2])];
-    let second = [L::load(&b[0]), L::load(&b[1]), L::load(&b[2])];
-    let third = cross(&first, &second);
-    let mut axes = [*a, *b, [third[0].store(), third[1].store(), third[2].store()]];
-    for half in 0..2 {
-        let mut frame = [[<L::Doubles as Elementwise>::splat(0.0); 3]; 3];
-        for i in 0..3 {
-            for k in 0..3 {
-                frame[i][k] = <L::Doubles as Doubles>::load(&widened(&axes[i][k], half));
-            }
-        }
-        let off = deviation(&frame).store().0;
-        for place in 0..HALF {
-            if off[place] > MOST_DEVIATION - 2.0 * DEVIATION_ERROR {
-                for i in 0..3 {
-                    for k in 0..3 {
-                        axes[i][k][half * HALF + place] = f32::from(u8::from(i == k));
-                    }
-                }
-            }
+fn stored<L: Lanes>([low, high]: &[[[L::Doubles; 3]; 2]; 2]) -> [[L; 3]; 2] {
+    let mut axes = [[L::splat(0.0); 3]; 2];
+    for i in 0..2 {
+        for k in 0..3 {
+            axes[i][k] = L::narrowed([low[i][k], high[i][k]]);
         }
     }
     axes
 }
 
-/// About the middles of the boxes and their half extents. The center may be anything: the extents are measured from it.
+/// The axes with the third ones, as whoever reads the boxes computes them; those of the coordinates for the one frame in some 10⁸
+/// that its roundings leave less orthonormal than boxes promise.
 #[inline(always)]
-fn middle<L: Lanes>(
-    axes: &[[[f32; WIDTH]; 3]; 3],
-    rows: &[Row],
-    lanes: LanesAre,
-) -> ([[f32; WIDTH]; 3], [[f32; WIDTH]; 3]) {
-    let mut axis: Axes<L> = [[L::splat(0.0); 3]; 3];
+fn all_axes<L: Lanes>(&[first, second]: &[[L; 3]; 2]) -> Axes<L> {
+    let mut axes = [first, second, cross(&first, &second)];
+    let ([a, b], [c, d]) = (widened(&axes[0]), widened(&axes[1]));
+    let [e, f] = widened(&axes[2]);
+    let is_spoiled = L::narrowed([is_spoiled(&[a, c, e]), is_spoiled(&[b, d, f])]);
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
     for i in 0..3 {
         for k in 0..3 {
-            axis[i][k] = L::load(&axes[i][k]);
+            let unit = if i == k { one } else { zero };
+            axes[i][k] = L::if_greater(is_spoiled, zero, unit, axes[i][k]);
         }
     }
-    let mut low = [L::splat(f32::INFINITY); 3];
-    let mut high = [L::splat(f32::NEG_INFINITY); 3];
-    for row in rows {
-        let p = [L::load(&row[0]), L::load(&row[1]), L::load(&row[2])];
-        for i in 0..3 {
-            let along = axis[i][0] * p[0] + axis[i][1] * p[1] + axis[i][2] * p[2];
-            low[i] = along.min(low[i]);
-            high[i] = along.max(high[i]);
-        }
-    }
-    if lanes == LanesAre::PartsOfOne {
-        for i in 0..3 {
-            low[i] = L::splat(low[i].store().into_iter().fold(f32::INFINITY, f32::min));
-            high[i] = L::splat(high[i].store().into_iter().fold(f32::NEG_INFINITY, f32::max));
-        }
-    }
-    let (mut center, mut about) = ([L::splat(0.0); 3], [[0.0; WIDTH]; 3]);
-    for i in 0..3 {
-        let middle = (low[i] + high[i]) * L::splat(0.5);
-        for k in 0..3 {
-            center[k] = center[k] + axis[i][k] * middle;
-        }
-        about[i] = ((high[i] - low[i]) * L::splat(0.5)).store();
-    }
-    ([center[0].store(), center[1].store(), center[2].store()], about)
+    axes
 }
+
+/// One for frames that are less orthonormal than boxes promise, else zero.
+#[inline(always)]
+fn is_spoiled<D: Doubles<Scalar = f64>>(frame: &[[D; 3]; 3]) -> D {
+    let most = D::splat(MOST_DEVIATION - 2.0 * DEVIATION_ERROR);
+    D::if_greater(deviation(frame), most, D::splat(1.0), D::splat(0.0))
+}
+
+/// About the middles of boxes with these axes, and their half extents. The center may be anything: the extents are measured from it.
+struct Middle<L> {
+    axes: Axes<L>,
+    low: [L; 3],
+    high: [L; 3],
+}
+
+impl<L: Lanes> Middle<L> {
+    #[inline(always)]
+    fn new(axes: Axes<L>) -> Self {
+        Self { axes, low: [L::splat(f32::INFINITY); 3], high: [L::splat(f32::NEG_INFINITY); 3] }
+    }
+
+    /// Takes a point, from the origin.
+    #[inline(always)]
+    fn add(&mut self, p: &[L; 3]) {
+        for i in 0..3 {
+            let axis = &self.axes[i];
+            let along = axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2];
+            self.low[i] = along.min(self.low[i]);
+            self.high[i] = along.max(self.high[i]);
+        }
+    }
+
+    /// In every lane what is between all lanes.
+    #[inline(always)]
+    fn join_all(&mut self) {
+        for i in 0..3 {
+            self.low[i] = L::splat(self.low[i].store().into_iter().fold(f32::INFINITY, f32::min));
+            self.high[i] = L::splat(self.high[i].store().into_iter().fold(f32::NEG_INFINITY, f32::max));
+        }
+    }
+
+    /// The centers, and what is to be measured from them in both halves of the lanes.
+    #[inline(always)]
+    fn reaches(&self, origin: [f32; 3]) -> ([L; 3], [WideReach<L::Doubles>; 2]) {
+        let (mut center, mut about) = ([L::splat(0.0); 3], [L::splat(0.0); 3]);
+        for i in 0..3 {
+            let middle = (self.low[i] + self.high[i]) * L::splat(0.5);
+            for k in 0..3 {
+                center[k] = center[k] + self.axes[i][k] * middle;
+            }
+            about[i] = (self.high[i] - self.low[i]) * L::splat(0.5);
+        }
+        let (centers, abouts) = (widened(&center), widened(&about));
+        let axes = [widened(&self.axes[0]), widened(&self.axes[1]), widened(&self.axes[2])];
+        let low = [axes[0][0], axes[1][0], axes[2][0]];
+        let high = [axes[0][1], axes[1][1], axes[2][1]];
+        let low = WideReach::new(origin, &centers[0], low, &abouts[0]);
+        (center, [low, WideReach::new(origin, &centers[1], high, &abouts[1])])
+    }
+}
+
+mod triangles;
 
 #[cfg(test)]
 mod tests;

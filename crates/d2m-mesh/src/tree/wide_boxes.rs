@@ -4,10 +4,11 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::node::{Below, WIDTH, WideNode};
+use super::refine::Axes;
 use super::slabs::{CUT_SLACK, MOST, PAIRS, STEPS};
 use super::surface::Reach;
 use crate::margin::{UNIT_F32, UNIT_F64, round_up};
-use d2m_lanes::{Doubles, Quad, power_of_two};
+use d2m_lanes::{Doubles, Elementwise, Lanes, Quad, power_of_two};
 
 /// Lanes in one register of doubles.
 pub(super) const HALF: usize = WIDTH / 2;
@@ -22,66 +23,104 @@ const PLACES: [f64; 4] = [1.0, 256.0, 65_536.0, 16_777_216.0];
 const UP: f64 = 1.0 + 2.0 * UNIT_F32;
 const LEAST_UP: f64 = power_of_two(-149);
 
-/// Numbers of single precision that are not below these: by at most three steps of rounding above them.
+/// What becomes, in single precision, numbers that are not below these: by at most three steps of rounding above them.
 #[inline(always)]
-pub(super) fn outward<D: Doubles<Scalar = f64>>(x: D) -> [f32; HALF] {
-    (x * D::splat(UP) + D::splat(LEAST_UP)).narrow()
+pub(super) fn outward<D: Doubles<Scalar = f64>>(x: D) -> D {
+    x * D::splat(UP) + D::splat(LEAST_UP)
 }
 
-/// One half of eight lanes in twice the digits.
+/// Both halves of vectors, in twice the digits.
 #[inline(always)]
-pub(super) fn widened(lanes: &[f32; WIDTH], half: usize) -> Quad {
-    let at = half * HALF;
-    Quad([f64::from(lanes[at]), f64::from(lanes[at + 1]), f64::from(lanes[at + 2]), f64::from(lanes[at + 3])])
+pub(super) fn widened<L: Lanes>(v: &[L; 3]) -> [[L::Doubles; 3]; 2] {
+    let ([a, b], [c, d], [e, f]) = (v[0].widened(), v[1].widened(), v[2].widened());
+    [[a, c, e], [b, d, f]]
 }
 
 static BLANK: WideNode = WideNode::empty([0.0; 3], 0);
 
 /// Eight boxes, lane by lane.
-pub(super) struct Boxes {
-    pub(super) center: [[f32; WIDTH]; 3],
-    pub(super) axes: [[[f32; WIDTH]; 3]; 3],
-    pub(super) half_extent: [[f32; WIDTH]; 3],
+pub(super) struct Boxes<L: Lanes> {
+    center: [L; 3],
+    axes: Axes<L>,
+    half_extent: [L; 3],
     /// For each pair of axes four bytes as a number.
-    pub(super) slabs: [[f64; WIDTH]; 3],
-    pub(super) radius: [f32; WIDTH],
+    slabs: [[L::Doubles; 2]; 3],
+    radius: L,
 }
 
-impl Boxes {
+impl<L: Lanes> Boxes<L> {
+    /// Around what reaches so far from these centers along these axes: rounded outward.
+    #[inline(always)]
+    pub(super) fn around(center: [L; 3], axes: Axes<L>, reached: &[WideReach<L::Doubles>; 2]) -> Self {
+        let [low, high] = reached;
+        let slack = [low.slack(), high.slack()];
+        let mut half_extent = center;
+        for i in 0..3 {
+            half_extent[i] = L::narrowed([outward(low.half[i] + slack[0]), outward(high.half[i] + slack[1])]);
+        }
+        let radius = L::narrowed([outward(low.radius(slack[0])), outward(high.radius(slack[1]))]);
+        let half = widened(&half_extent);
+        let (low, high) = (low.cut(&half[0], slack[0]), high.cut(&half[1], slack[1]));
+        let slabs = [[low[0], high[0]], [low[1], high[1]], [low[2], high[2]]];
+        Self { center, axes, half_extent, slabs, radius }
+    }
+
     /// Makes them the boxes of a node; lanes that are not used are blank.
     #[inline(always)]
-    pub(super) fn store(&mut self, node: &mut WideNode, below: &[Below], origin: [f32; 3]) {
+    pub(super) fn store(&self, node: &mut WideNode, below: &[Below], origin: [f32; 3]) {
         let used = below.len();
         let blank = &BLANK;
-        for lane in used..WIDTH {
-            for i in 0..3 {
-                self.center[i][lane] = blank.center[i][lane];
-                self.half_extent[i][lane] = blank.half_extent[i][lane];
-                self.slabs[i][lane] = 0.0;
+        for i in 0..3 {
+            node.center[i] = self.center[i].store();
+            node.half_extent[i] = self.half_extent[i].store();
+        }
+        for i in 0..2 {
+            for k in 0..3 {
+                node.axes[i][k] = self.axes[i][k].store();
             }
-            for i in 0..2 {
-                for k in 0..3 {
-                    self.axes[i][k][lane] = blank.axes[i][k][lane];
+        }
+        (node.radius, node.child) = (self.radius.store(), blank.child);
+        (node.origin, node.used) = (origin, used as u32);
+        for pair in 0..3 {
+            for half in 0..2 {
+                let words = (self.slabs[pair][half] + L::Doubles::splat(WHOLE_BITS)).store().0;
+                for place in 0..HALF {
+                    node.slabs[pair][half * HALF + place] = f32::from_bits(words[place].to_bits() as u32);
                 }
             }
-            self.radius[lane] = blank.radius[lane];
         }
-        let [first, second, _] = self.axes;
-        (node.center, node.axes, node.half_extent) = (self.center, [first, second], self.half_extent);
-        (node.radius, node.child) = (self.radius, blank.child);
-        (node.origin, node.used) = (origin, used as u32);
-        for (pair, slabs) in node.slabs.iter_mut().zip(&self.slabs) {
-            for lane in 0..WIDTH {
-                pair[lane] = f32::from_bits((slabs[lane] + WHOLE_BITS).to_bits() as u32);
-            }
-        }
+        let reaches = self.reaches();
         let mut reach = 0.0;
         for lane in 0..used {
             node.set_below(lane, below[lane]);
-            let lane = node.reach_of(lane);
+            let lane = reaches[lane / HALF].0[lane % HALF];
             reach = if lane > reach { lane } else { reach };
         }
         node.extent = round_up(reach);
+        for lane in used..WIDTH {
+            for i in 0..3 {
+                node.center[i][lane] = blank.center[i][lane];
+                node.half_extent[i][lane] = blank.half_extent[i][lane];
+                node.slabs[i][lane] = blank.slabs[i][lane];
+            }
+            for i in 0..2 {
+                for k in 0..3 {
+                    node.axes[i][k][lane] = blank.axes[i][k][lane];
+                }
+            }
+            node.radius[lane] = blank.radius[lane];
+        }
+    }
+
+    /// |center|₁ + radius, as [`WideNode::reach_of`] has it.
+    #[inline(always)]
+    fn reaches(&self) -> [Quad; 2] {
+        let [low, high] = widened(&self.center);
+        let radius = self.radius.widened();
+        [
+            (low[0].abs() + low[1].abs() + low[2].abs() + radius[0]).store(),
+            (high[0].abs() + high[1].abs() + high[2].abs() + radius[1]).store(),
+        ]
     }
 }
 
@@ -102,29 +141,21 @@ pub(super) struct WideReach<D> {
 
 impl<D: Doubles<Scalar = f64>> WideReach<D> {
     #[inline(always)]
-    pub(super) fn new(origin: [f32; 3], boxes: &Boxes, about: &[[f32; WIDTH]; 3], half: usize) -> Self {
+    pub(super) fn new(origin: [f32; 3], center: &[D; 3], axes: [[D; 3]; 3], about: &[D; 3]) -> Self {
         let zero = D::splat(0.0);
         let (low, high) = (D::splat(f64::INFINITY), D::splat(f64::NEG_INFINITY));
-        let mut reach = Self {
-            axes: [[zero; 3]; 3],
-            origin: [zero; 3],
-            center: [zero; 3],
-            about: [zero; 3],
+        let [x, y, z] = origin;
+        Self {
+            axes,
+            origin: [D::splat(f64::from(x)), D::splat(f64::from(y)), D::splat(f64::from(z))],
+            center: *center,
+            about: *about,
             half: [zero; 3],
             sum: [[low, high]; 3],
             difference: [[low, high]; 3],
             square: zero,
             norm: zero,
-        };
-        for k in 0..3 {
-            reach.origin[k] = D::splat(f64::from(origin[k]));
-            reach.center[k] = D::load(&widened(&boxes.center[k], half));
-            reach.about[k] = D::load(&widened(&about[k], half));
-            for i in 0..3 {
-                reach.axes[i][k] = D::load(&widened(&boxes.axes[i][k], half));
-            }
         }
-        reach
     }
 
     #[inline(always)]
@@ -168,32 +199,30 @@ impl<D: Doubles<Scalar = f64>> WideReach<D> {
         self.norm = D::splat(self.norm.max(other.norm).max_element());
     }
 
-    /// Rounds outward and stores.
+    /// Bound on the error of coordinates along the axes.
     #[inline(always)]
-    pub(super) fn finish(&self, boxes: &mut Boxes, half: usize) {
+    fn slack(&self) -> D {
         let (o, c) = (&self.origin, &self.center);
         let lengths =
             self.norm + (o[0].abs() + o[1].abs() + o[2].abs()) + (c[0].abs() + c[1].abs() + c[2].abs());
-        let slack = D::splat(Reach::SLACK) * lengths;
-        let at = half * HALF;
-        for i in 0..3 {
-            boxes.half_extent[i][at..][..HALF].copy_from_slice(&outward(self.half[i] + slack));
-        }
-        let radius = self.square.sqrt() * D::splat(1.0 + 8.0 * UNIT_F64) + slack;
-        boxes.radius[at..][..HALF].copy_from_slice(&outward(radius));
-        self.cut(boxes, half, slack);
+        D::splat(Reach::SLACK) * lengths
     }
 
-    /// What can be cut off the edges, as [`EdgeReach`](super::slabs::EdgeReach) derives it.
+    /// How far all of it reaches from the center.
     #[inline(always)]
-    fn cut(&self, boxes: &mut Boxes, half: usize, slack: D) {
+    fn radius(&self, slack: D) -> D {
+        self.square.sqrt() * D::splat(1.0 + 8.0 * UNIT_F64) + slack
+    }
+
+    /// What can be cut off the edges of boxes with these half extents, as [`EdgeReach`](super::slabs::EdgeReach) derives it.
+    #[inline(always)]
+    fn cut(&self, h: &[D; 3], slack: D) -> [D; 3] {
         let zero = D::splat(0.0);
-        let mut h = [slack; 3];
         let mut off = [slack; 3];
         for k in 0..3 {
-            h[k] = D::load(&widened(&boxes.half_extent[k], half));
             off[k] = (h[k] - self.about[k]).abs() + slack;
         }
+        let mut slabs = [zero; 3];
         for pair in 0..3 {
             let (i, j) = PAIRS[pair];
             let more = h[i] * off[j] + h[j] * off[i];
@@ -214,7 +243,8 @@ impl<D: Doubles<Scalar = f64>> WideReach<D> {
                 let whole = ((steps - D::splat(0.5)) + D::splat(WHOLE)) - D::splat(WHOLE);
                 bytes = bytes + whole * D::splat(PLACES[edge]);
             }
-            boxes.slabs[pair][half * HALF..][..HALF].copy_from_slice(&bytes.store().0);
+            slabs[pair] = bytes;
         }
+        slabs
     }
 }
