@@ -12,6 +12,14 @@ pub(crate) fn both<A: Send, B: Send>(
     (first(), second())
 }
 
+/// Does one thread do all there is?
+pub(crate) fn is_alone() -> bool {
+    #[cfg(feature = "rayon")]
+    return rayon::current_num_threads() == 1;
+    #[cfg(not(feature = "rayon"))]
+    true
+}
+
 /// Triangles, or vertices, from which on two threads are worth waking: a tree of so many takes two milliseconds.
 pub(crate) const MANY: usize = 4096;
 

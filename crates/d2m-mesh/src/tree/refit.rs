@@ -6,7 +6,7 @@ use super::mesh_tree::MeshTree;
 use super::node::{Below, LEAF, WideNode};
 use super::surface::{Extent, Surface};
 use crate::MeshError;
-use crate::parallel::{both, both_of_many};
+use crate::parallel::{both, both_of_many, is_alone};
 use glam::DVec3;
 
 impl MeshTree {
@@ -34,7 +34,8 @@ impl MeshTree {
         let surface = Surface::new(&mesh, &extent);
         let before = self.closedness();
         let mut nodes = core::mem::take(&mut self.nodes);
-        let refit = Refit { fitting: Fitting::new(&surface), in_order: is_in_order(&nodes) };
+        let is_divided = nodes.len() > GRAIN && !is_alone() && is_in_order(&nodes);
+        let refit = Refit { fitting: Fitting::new(&surface), is_divided };
         let fit = || {
             let (root, rest) = nodes.split_at_mut(1);
             let tree = refit.subtree(root[0].below(0), rest, 1);
@@ -71,14 +72,14 @@ const GRAIN: usize = 512;
 
 struct Refit<'a> {
     fitting: Fitting<'a>,
-    /// Numbered in the order of a walk: what is below a box is a run of nodes.
-    in_order: bool,
+    /// Among threads: what is below a box is then a run of nodes.
+    is_divided: bool,
 }
 
 impl Refit<'_> {
     /// What is below a box: a triangle, or one of these nodes, of which the first has the number `first`.
     fn subtree(&self, below: Below, nodes: &mut [WideNode], first: u32) -> Subtree {
-        if nodes.len() <= GRAIN || !self.in_order {
+        if nodes.len() <= GRAIN || !self.is_divided {
             return self.fitting.subtree(|scratch| self.lane(below, nodes, first, scratch));
         }
         let (node, rest) = nodes.split_at_mut(1);

@@ -8,6 +8,7 @@ use crate::parallel::{MANY, map_in_order};
 use d2m_lanes::three::{dot, minus};
 use d2m_lanes::{power_of_two, power_of_two_above};
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// Where local coordinates begin, how far the body reaches from there, and the unit they are divided by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +23,7 @@ impl Extent {
     pub(super) fn of(mesh: &TriMesh) -> Self {
         let used = used_vertices(mesh);
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for &p in &used {
+        for &p in used.iter() {
             (low, high) = (low.min(p), high.max(p));
         }
         let center = low * 0.5 + high * 0.5;
@@ -58,13 +59,16 @@ impl Extent {
 }
 
 /// The vertices that triangles use, each once.
-fn used_vertices(mesh: &TriMesh) -> Vec<DVec3> {
+fn used_vertices(mesh: &TriMesh) -> Cow<'_, [DVec3]> {
     let mut is_used = vec![false; mesh.vertex_count()];
     for &vertex in mesh.triangles().as_flattened() {
         is_used[vertex as usize] = true;
     }
+    if is_used.iter().all(|is_used| *is_used) {
+        return Cow::Borrowed(mesh.vertices());
+    }
     let vertices = mesh.vertices().iter().zip(is_used);
-    vertices.filter_map(|(&vertex, is_used)| is_used.then_some(vertex)).collect()
+    Cow::Owned(vertices.filter_map(|(&vertex, is_used)| is_used.then_some(vertex)).collect())
 }
 
 /// The least unit of a tree: one over it is a number.
