@@ -126,7 +126,10 @@ impl RigidMotion for KeptMotion<'_> {
 }
 
 /// Answers by the bits of what was asked. The first ones are kept, and none gives way, so that no thread waits for another.
-struct Kept<const NUMBERS: usize, T>(Box<[OnceLock<([u64; NUMBERS], T)>]>);
+struct Kept<const NUMBERS: usize, T>(Box<[Place<NUMBERS, T>]>);
+
+/// What was asked, and the answer.
+type Place<const NUMBERS: usize, T> = OnceLock<([u64; NUMBERS], T)>;
 
 impl<const NUMBERS: usize, T: Copy> Kept<NUMBERS, T> {
     fn new() -> Self {
@@ -228,7 +231,7 @@ mod tests {
         // On either side.
         let pair = |k: usize| {
             let both = [Moving::new(&tree, &moved[k]), Moving::new(&tree, &common)];
-            if k % 2 == 0 { (both[0], both[1]) } else { (both[1], both[0]) }
+            if k.is_multiple_of(2) { (both[0], both[1]) } else { (both[1], both[0]) }
         };
         let pairs: Vec<_> = (0..moved.len()).map(pair).collect();
         let options = QueryOptions::default();
