@@ -167,8 +167,9 @@ impl BodyState {
         }
         body.gained = self.gained;
         (body.held, body.free, body.lead) = (false, self.free, None);
-        body.check_momenta(["momentum", "angular momentum"], [DVec3::ZERO; 2])?;
-        body.check_momenta(["force", "torque"], [self.force, self.torque])?;
+        let momenta = [("momentum", body.momentum), ("angular momentum", body.angular_momentum)];
+        body.check_momenta(momenta, [DVec3::ZERO; 2])?;
+        body.check_momenta([("force", self.force), ("torque", self.torque)], [self.force, self.torque])?;
         if let Some(target) = self.target {
             body.check_target(target, now)?;
         }

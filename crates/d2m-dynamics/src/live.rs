@@ -50,7 +50,8 @@ impl Simulation {
             target(own, pose).ok_or_else(|| bad(format!("{}, {}", pose.translation, pose.rotation)))?;
         let moved = own.moved(position, orientation, self.time);
         let moved = moved.ok_or_else(|| bad(format!("{}, {}", pose.translation, pose.rotation)))?;
-        moved.check_momenta(["velocity", "angular velocity"], [DVec3::ZERO; 2])?;
+        let Velocity { linear, angular } = moved.velocity();
+        moved.check_momenta([("velocity", linear), ("angular velocity", angular)], [DVec3::ZERO; 2])?;
         self.replace(place, moved)
     }
 
@@ -89,14 +90,15 @@ impl Simulation {
             let body = own.name.to_string();
             return Err(SimulationError::VelocityWithoutMotion { body, name: "velocity", value: linear });
         }
-        for (name, value) in [("velocity", linear), ("angular velocity", angular)] {
+        let given = [("velocity", linear), ("angular velocity", angular)];
+        for (name, value) in given {
             if !value.is_finite() {
                 return Err(SimulationError::TooLarge { body: own.name.to_string(), name, value });
             }
         }
         let mut changed = own.clone();
         changed.set_velocity(Velocity { linear, angular });
-        changed.check_momenta(["velocity", "angular velocity"], [DVec3::ZERO; 2])?;
+        changed.check_momenta(given, [DVec3::ZERO; 2])?;
         self.bodies[place] = changed;
         self.drop_known(place);
         Ok(())

@@ -28,7 +28,7 @@ impl Simulation {
     pub fn set_force(&mut self, body: BodyId, force: DVec3, torque: DVec3) -> Result<(), SimulationError> {
         let place = self.place(body);
         let body = &mut self.bodies[place];
-        body.check_momenta(["force", "torque"], [force, torque])?;
+        body.check_momenta([("force", force), ("torque", torque)], [force, torque])?;
         (body.force, body.torque) = (force, torque);
         self.wake_place(place);
         Ok(())
@@ -89,7 +89,7 @@ impl Simulation {
     ) -> Result<(), SimulationError> {
         let place = self.place(body);
         let body = &mut self.bodies[place];
-        body.check_momenta(["impulse", "angular impulse"], [impulse, angular])?;
+        body.check_momenta([("impulse", impulse), ("angular impulse", angular)], [impulse, angular])?;
         if body.is_dynamic() {
             body.momentum += impulse;
             body.angular_momentum += angular;

@@ -228,33 +228,34 @@ impl RigidBody {
             asleep: false,
             quiet: Quiet::default(),
         };
-        made.check_momenta(["velocity", "angular velocity"], [DVec3::ZERO; 2])?;
+        let velocities = [("velocity", body.linear_velocity), ("angular velocity", body.angular_velocity)];
+        made.check_momenta(velocities, [DVec3::ZERO; 2])?;
         Ok(made)
     }
 
-    /// Two additions to the momenta, linear and angular, by their names: refused if they are not finite, or if the body would have
+    /// Two additions to the momenta, linear and angular, and what is given for them, by its names: refused if they are not finite, or if the body would have
     /// momenta or velocities above [`Simulation::LARGEST`](crate::Simulation::LARGEST).
     pub(crate) fn check_momenta(
         &self,
-        names: [&'static str; 2],
+        given: [(&'static str, DVec3); 2],
         [linear, angular]: [DVec3; 2],
     ) -> Result<(), SimulationError> {
         // Also what is not a number is refused.
-        let refuse = |name: &'static str, value: DVec3| {
+        let refuse = |(name, value): (&'static str, DVec3)| {
             Err(SimulationError::TooLarge { body: self.name.to_string(), name, value })
         };
         if !linear.is_finite() || !is_small(self.momentum + linear) {
-            return refuse(names[0], linear);
+            return refuse(given[0]);
         }
         if !angular.is_finite() || !is_small(self.angular_momentum + angular) {
-            return refuse(names[1], angular);
+            return refuse(given[1]);
         }
         if !is_small((self.momentum + linear) * self.inverse_mass) {
-            return refuse(names[0], linear);
+            return refuse(given[0]);
         }
         let turn = self.inverse_inertia_at(self.orientation) * (self.angular_momentum + angular);
         if !is_small(turn) {
-            return refuse(names[1], angular);
+            return refuse(given[1]);
         }
         Ok(())
     }
