@@ -168,4 +168,5 @@ fn runs_are_thinned_and_packed() {
     let height = lines[1]["bodies"][1]["x"][1].as_f64().unwrap();
     assert!((height - (1.0 - 0.5 * 9.81 * 0.0625)).abs() < 0.03, "{height}");
     refused(&["simulate", &scene, "--out", &run, "--every", "0"], &["--every", "positive"]);
+    refused(&["simulate", &scene, "--out", &run, "--every", "1e-300"], &["--every", "too many segments"]);
 }

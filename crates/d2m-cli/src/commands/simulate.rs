@@ -5,7 +5,7 @@ use crate::engine::{number, threads};
 use crate::failure::Failure;
 use crate::output::{Output, Stream, note, progress_bar};
 use crate::report::duration;
-use crate::simulation::{Line, SimulatedScene, Thinner, header, read_scene, segment};
+use crate::simulation::{Line, MOST_STEPS, SimulatedScene, Thinner, header, read_scene, segment};
 use d2m_dynamics::{BodyId, Segment, StepError};
 use std::time::{Duration, Instant};
 
@@ -16,12 +16,19 @@ const ROUNDING: f64 = 1e-6;
 pub(crate) fn run(arguments: &SimulateArguments) -> Result<(), Failure> {
     let out = Output::new(&arguments.out)?.spare([arguments.scene.as_path()])?;
     let every = arguments.every.as_ref().map(|text| number("--every", text, "a positive time", |t| t > 0.0));
-    let thinner = every.transpose()?.map(Thinner::new);
+    let every = every.transpose()?;
     let scene = read_scene(&arguments.scene)?;
+    if let Some(every) = every.filter(|every| scene.end / every > MOST_STEPS) {
+        let end = scene.end;
+        return Err(Failure::at(
+            "--every",
+            format!("{every:?} divides the time until {end:?} in too many segments"),
+        ));
+    }
     warn_of_gap(&scene);
     let pool = threads(arguments.threads.or(scene.threads).unwrap_or(1).into())?;
     let name = arguments.scene.display().to_string();
-    let ended = pool.install(|| simulate(scene, &name, &out, thinner))?;
+    let ended = pool.install(|| simulate(scene, &name, &out, every.map(Thinner::new)))?;
     if let Some(error) = ended.early {
         Err(Failure::at(name, format!("{error}; {}", ended.written)))
     } else {
@@ -81,11 +88,14 @@ impl RunFile<'_> {
     }
 
     fn write(&mut self, segments: &[Segment], took: Duration) -> Result<(), Failure> {
-        let Some(thinner) = &mut self.thinner else {
+        let Some(mut thinner) = self.thinner.take() else {
             return self.append(segments, None, took.as_secs_f64());
         };
-        let segments = thinner.add(segments);
-        self.append(&segments, Some(Line::Thinned), took.as_secs_f64())
+        let mut took = took.as_secs_f64();
+        let written = thinner
+            .add(segments, |segments| self.append(segments, Some(Line::Thinned), core::mem::take(&mut took)));
+        self.thinner = Some(thinner);
+        written
     }
 
     /// Appends segments, all as lines of one kind if it is given.

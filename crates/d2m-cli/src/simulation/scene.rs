@@ -105,7 +105,7 @@ pub(crate) fn read_scene(path: &Path) -> Result<SimulatedScene, Failure> {
 const MOST_THREADS: u16 = 1024;
 
 /// Steps of a run at most: as many as doubles count.
-const MOST_STEPS: f64 = 9_007_199_254_740_992.0; // 2⁵³
+pub(crate) const MOST_STEPS: f64 = 9_007_199_254_740_992.0; // 2⁵³
 
 /// What the key `simulation` says.
 struct Settings {
