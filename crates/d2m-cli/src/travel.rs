@@ -2,6 +2,7 @@
 
 use crate::output::{digits, note};
 use d2m::bvh::Window;
+use d2m::interval::Interval;
 use d2m::motion::{AnyMotion, RigidMotion};
 use std::f64::consts::TAU;
 
@@ -37,6 +38,21 @@ impl Travel {
     }
 }
 
+impl Travel {
+    /// [`Self::turns_far`] of what [`Self::of`] sums, which is not summed where the fastest turn that is possible is not enough.
+    pub(crate) fn of_turns_far(motion: &AnyMotion, window: Window) -> bool {
+        let (span, times) = (Interval::new(window.start(), window.end()), motion.domain());
+        if times.lo() <= span.lo() && span.hi() <= times.hi() {
+            // What is not a number is no bound.
+            let fastest = motion.enclose_twist(span).angular.norm().hi();
+            if fastest * window.length() <= TAU {
+                return false;
+            }
+        }
+        Self::of(motion, window).turns_far()
+    }
+}
+
 /// Turns from which on queries refuse a motion, 2⁴⁰.
 const REFUSED: f64 = 1_099_511_627_776.0;
 
@@ -59,5 +75,32 @@ pub(crate) fn warn_of_turn(place: &str, travel: Travel) {
             "d2m: warning: {place}: the body turns {} times in the window; angles are radians, or degrees with deg behind the number",
             digits(travel.turn / TAU)
         ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use d2m::glam::{DQuat, DVec3};
+    use d2m::motion::{Chain, ConstantTwist, Joint, JointKind, JointValue};
+
+    /// Also of a joint that turns as far, but not steadily, so that its fastest turn is no bound that is enough.
+    #[test]
+    fn bodies_that_turn_more_than_once_are_known_without_their_sum_too() {
+        let window = Window::UNIT;
+        for (angle, turns_far) in [(0.1, false), (6.2, false), (6.4, true), (100.0, true)] {
+            let twist = ConstantTwist::REST.with_angular_velocity(DVec3::Z * angle);
+            let mut motions: Vec<AnyMotion> = vec![twist.into()];
+            for coefficients in [vec![0.0, angle], vec![0.0, 0.0, angle]] {
+                let value = JointValue::try_polynomial(coefficients).unwrap();
+                let kind = JointKind::Revolute { axis: DVec3::Z, value };
+                let joint = Joint::try_new(DVec3::X, DQuat::IDENTITY, kind).unwrap();
+                motions.push(Chain::try_new(vec![joint]).unwrap().into());
+            }
+            for motion in &motions {
+                assert_eq!(Travel::of(motion, window).turns_far(), turns_far, "{angle}");
+                assert_eq!(Travel::of_turns_far(motion, window), turns_far, "{angle}");
+            }
+        }
     }
 }

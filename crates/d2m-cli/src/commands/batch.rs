@@ -116,7 +116,7 @@ fn warn_of_orientations(arguments: &BatchArguments, trials: &[Trial]) {
     let turns = |trial: &Trial| {
         [&trial.motion_a, &trial.motion_b]
             .into_iter()
-            .any(|motion| Travel::of(motion, trial.window).turns_far())
+            .any(|motion| Travel::of_turns_far(motion, trial.window))
     };
     warn(&turns, "a body that turns more than once in the window (angles are radians)");
 }

@@ -237,7 +237,7 @@ fn row(
     let options = QueryOptions::default();
     let single = || pairs.iter().map(|&(a, b)| time_of_contact(a, b, Window::UNIT, &options)).collect();
     let expected: Vec<_> = single();
-    for count in [1, 2] {
+    for (count, threads) in [(1, "one thread"), (2, "two threads")] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build()?;
         let mut least = [[f64::INFINITY; 2]; 2];
         let (mut waiting, mut wall) = (0.0, 0.0);
@@ -255,7 +255,7 @@ fn row(
         }
         let part = |clock: usize| least[0][clock] / (least[1][clock] * count as f64);
         BusyFigure {
-            what: format!("batch of {name}, {count} threads: queries a thread over single ones"),
+            what: format!("batch of {name}, {threads}: queries a thread over single ones"),
             value: part(0),
             by_processor: part(1),
             unit: "times",
