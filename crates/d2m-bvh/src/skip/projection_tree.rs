@@ -58,6 +58,8 @@ pub(super) struct CellSize {
 pub(super) struct ProjectionTree {
     pub(super) cells: Vec<Cell>,
     pieces: Vec<Piece>,
+    /// Those that come after them in number: parts of pieces, which grow without a copy of what there was at first.
+    parts: Vec<Piece>,
     /// Of the pieces that there were at first, and their order: those of a cell stand side by side.
     projections: Vec<Projection>,
     order: Vec<u32>,
@@ -69,7 +71,7 @@ impl ProjectionTree {
     pub(super) fn try_new(pieces: Vec<Piece>, h: f64, clock: &mut Meter) -> Result<Self, Exhausted> {
         let projections: Vec<Projection> = pieces.iter().map(Piece::projection).collect();
         let order: Vec<u32> = (0..).take(pieces.len()).collect();
-        let mut tree = Self { cells: Vec::new(), pieces, projections, order, h };
+        let mut tree = Self { cells: Vec::new(), pieces, parts: Vec::new(), projections, order, h };
         if !tree.order.is_empty() {
             let root = tree.cell(0..tree.order.len(), clock)?;
             tree.cells.push(root);
@@ -107,7 +109,8 @@ impl ProjectionTree {
 
     /// The piece that a cell is.
     pub(super) fn piece(&self, cell: usize) -> Option<&Piece> {
-        self.cells[cell].piece.map(|piece| &self.pieces[piece as usize])
+        let number = self.cells[cell].piece? as usize;
+        Some(self.pieces.get(number).unwrap_or_else(|| &self.parts[number - self.pieces.len()]))
     }
 
     /// What decides which of two cells is expanded.
@@ -137,7 +140,7 @@ impl ProjectionTree {
         let first = self.cells.len();
         (self.cells[cell].first_below, self.cells[cell].below) = (first as u32, 4);
         for part in piece.divided(self.h) {
-            let number = self.pieces.len() as u32;
+            let number = (self.pieces.len() + self.parts.len()) as u32;
             self.cells.push(Cell {
                 projection: part.projection(),
                 piece: Some(number),
@@ -145,7 +148,7 @@ impl ProjectionTree {
                 below: 0,
                 count: 1,
             });
-            self.pieces.push(part);
+            self.parts.push(part);
         }
         Ok(first..first + 4)
     }

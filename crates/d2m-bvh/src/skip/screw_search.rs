@@ -105,11 +105,11 @@ impl Seen {
     ) -> Result<Self, Exhausted> {
         let mesh = body.tree.mesh();
         let vertices = PlacedVertices::new(mesh.vertices().iter().map(|&p| place(body.place(p))));
-        let annulus = |triangle: &[u32; 3]| {
+        let mut annuli = Vec::with_capacity(mesh.triangle_count());
+        for &triangle in mesh.triangles() {
             clock.step()?;
-            Ok(AnnularBound::of(&vertices.corners(*triangle)))
-        };
-        let annuli = mesh.triangles().iter().map(annulus).collect::<Result<Vec<_>, _>>()?;
+            annuli.push(AnnularBound::of(&vertices.corners(triangle)));
+        }
         Ok(Self { vertices, annuli })
     }
 }
