@@ -160,23 +160,25 @@ impl RigidMotion for Crank {
     }
 }
 
-/// A press that turns back, or a table that leaves, at the end of a step in which less room is left than queries resolve: nothing is crushed.
+/// A press that turns back at the end of a step in which less room is left than queries resolve, or a table that leaves then, or within the step:
+/// nothing is crushed.
 #[test]
 fn what_turns_back_crushes_nothing() {
     let (left, cube) = (1e-12, tree("box?x=0.3&y=0.3&z=0.3"));
     let time = (0..20).fold(0.0, |time, _| time + 0.01);
     let at = |y: f64| Pose { translation: DVec3::Y * y, ..Pose::IDENTITY };
-    let falls = [(0.0, at(-1.0)), (time, at(-1.0)), (1.0, at(-5.0))];
-    let comes = ConstantTwist::REST
-        .with_position(DVec3::Y * (0.8 + left))
-        .with_linear_velocity(DVec3::Y * -0.5)
-        .with_reference_time(time);
-    let rests = Kind::Kinematic(Arc::new(
-        Keyframes::try_new(&[(0.0, at(-1.0)), (9.0, at(-1.0))], Span::Linear).unwrap(),
-    ));
-    let leaves = Kind::Kinematic(Arc::new(Keyframes::try_new(&falls, Span::Linear).unwrap()));
+    let along =
+        |poses: &[(f64, Pose)]| Kind::Kinematic(Arc::new(Keyframes::try_new(poses, Span::Linear).unwrap()));
+    let rests = along(&[(0.0, at(-1.0)), (9.0, at(-1.0))]);
+    let leaves = |time: f64| along(&[(0.0, at(-1.0)), (time, at(-1.0)), (1.0, at(-5.0))]);
+    let comes = |time: f64| {
+        let high = ConstantTwist::REST.with_position(DVec3::Y * (0.8 + left));
+        let motion = high.with_linear_velocity(DVec3::Y * -0.5).with_reference_time(time);
+        Kind::Kinematic(Arc::new(motion))
+    };
     let turns = Kind::Kinematic(Arc::new(Crank { low: 0.8 + left, time }));
-    for (table, press) in [(rests, turns), (leaves, Kind::Kinematic(Arc::new(comes)))] {
+    let within = time + 0.003;
+    for (table, press) in [(rests, turns), (leaves(time), comes(time)), (leaves(within), comes(within))] {
         let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
         simulation.add(&Body::new("table", tree("box?x=10&y=1&z=10")).with_kind(table)).unwrap();
         simulation.add(&Body::new("cube", Arc::clone(&cube)).with_position(DVec3::Y * 0.3005)).unwrap();
