@@ -5,8 +5,8 @@ use crate::load::read;
 use crate::mesh_library::MeshLibrary;
 use crate::scene::SceneBody;
 use crate::simulation::{Fields, short};
-use d2m::bvh::{Start, Window};
-use d2m_io::{SceneEntry, ScenePair, UniqueKeys, parse_start};
+use d2m::bvh::Window;
+use d2m_io::{SceneEntry, ScenePair, SceneTerms, UniqueKeys};
 use d2m_robot::{Attached, Obstacle, RobotScene};
 use glam::{DQuat, DVec3};
 use serde_json::Value;
@@ -22,9 +22,7 @@ const ROBOT_KEYS: &[&str] = &["pose", "attach"];
 pub(crate) struct RobotSceneFile<'a> {
     path: &'a Path,
     value: Value,
-    pub(crate) min_separation: Option<f64>,
-    pub(crate) tolerance: Option<f64>,
-    pub(crate) start: Option<Start>,
+    pub(crate) terms: SceneTerms,
 }
 
 /// Where a body is, in the world or in the frame of a link.
@@ -40,15 +38,8 @@ impl<'a> RobotSceneFile<'a> {
         let place = path.display().to_string();
         let UniqueKeys(value) = parse_json(&place, &read(path)?)?;
         let fields = Fields::new(place, &value, SCENE_KEYS)?;
-        let [min_separation, tolerance] = [fields.number("min_separation")?, fields.number("tolerance")?];
-        if let Some(distance) = min_separation.filter(|&distance| distance < 0.0) {
-            return Err(fields.fault("min_separation", format!("{distance:?} is negative")));
-        }
-        if let Some(distance) = tolerance.filter(|&distance| distance <= 0.0) {
-            return Err(fields.fault("tolerance", format!("{distance:?} is not above zero")));
-        }
-        let start = parse_start(fields.get("start")).map_err(|reason| fields.fault("start", reason))?;
-        Ok(Self { path, value, min_separation, tolerance, start })
+        let terms = fields.terms()?;
+        Ok(Self { path, value, terms })
     }
 
     /// Adds its bodies to the robot's scene. The motions of obstacles have to cover the path, which lasts for this window.

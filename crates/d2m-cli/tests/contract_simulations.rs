@@ -137,9 +137,24 @@ fn pairs_have_what_scenes_and_simulations_have() {
     assert!(states(&lines, 1).iter().any(|(_, state)| number(&state["v"][1]) > 1.0));
     for (place, value, words) in [
         ("/start", json!("go"), &["start: \"go\" is neither \"report\" nor \"leave\""][..]),
+        // What says nothing of a simulation is checked as in any scene.
+        ("/window", json!([1, 0]), &["bad.json, window: ", "reversed"]),
+        ("/window", json!("always"), &["bad.json, window: ", "\"always\""]),
+        ("/min_separation", json!(-1), &["bad.json, min_separation: -1.0 is not a finite distance"]),
+        ("/min_separation", json!("wide"), &["bad.json, min_separation: ", "\"wide\""]),
+        ("/tolerance", json!(0), &["bad.json, tolerance: 0.0 is not a positive finite distance"]),
+        ("/tolerance", json!([1e-9]), &["bad.json, tolerance: ", "sequence"]),
+        ("/window", json!([0.25, 0.5]), &[]),
+        ("/min_separation", json!(0.5), &[]),
+        ("/tolerance", json!(null), &[]),
+        ("/pairs/0", json!(["ball", "floor"]), &["pairs, entry 0: ", "not an object with keys"]),
         ("/pairs/0/b", json!("flor"), &["pairs, entry 0, b", "\"flor\" is the name of no body"]),
         ("/pairs/0/restitution", json!(1.5), &["pairs, entry 0, restitution", "1.5 is not from 0 to 1"]),
-        ("/pairs/0/friction", json!(-1), &["pairs, entry 0, friction", "-1.0 is not"]),
+        (
+            "/pairs/0/friction",
+            json!(-1),
+            &["pairs, entry 0, friction", "-1.0 is not a finite coefficient that is not negative"],
+        ),
         ("/pairs/0/start", json!(null), &[]),
     ] {
         let mut bad = scene.clone();

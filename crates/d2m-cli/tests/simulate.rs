@@ -105,7 +105,20 @@ fn bad_scenes_are_refused_with_their_place() {
     let cases = [
         (PILE.replace("\"end\": 1.5", "\"end\": 0"), "end"),
         (PILE.replace("\"step\": 0.02", "\"step\": -1"), "step"),
-        (PILE.replace("\"step\": 0.02", "\"step\": 1e-300"), "too many steps"),
+        (
+            PILE.replace("\"step\": 0.02", "\"step\": 1e-300"),
+            "simulation: step: 1e-300 is too short: doubles at the end 1.5 are 2.220446049250313e-16 apart",
+        ),
+        // As far as the next double: two multiples of it may be rounded to one time.
+        (
+            PILE.replace("\"step\": 0.02", "\"step\": 2.220446049250313e-16"),
+            "step: 2.220446049250313e-16 is too short",
+        ),
+        (
+            PILE.replace("\"restitution\": 0.3", "\"density\": 1e308"),
+            "body high: density 1e308: with the volume of ",
+        ),
+        (PILE.replace("\"restitution\": 0.3", "\"mass\": 1e-300"), "mass 1e-300: with the volume of "),
         (PILE.replace("\"restitution\": 0.3", "\"restitution\": 1.5"), "restitution"),
         (PILE.replace("\"restitution\": 0.3", "\"mass\": 0"), "mass"),
         (PILE.replace("\"restitution\": 0.3", "\"density\": -7800"), "density"),
@@ -124,6 +137,10 @@ fn bad_scenes_are_refused_with_their_place() {
             "body 0 (\"press\"): motion, velocity: ",
         ),
         (MOVING.replace("kinematic", "static"), "follows none"),
+        (
+            MOVING.replace("{\"x\": [-1.5, 0, 0], \"v\": [2, 0, 0]}", "[]"),
+            "body 0 (\"press\"), motion: invalid type: sequence",
+        ),
     ];
     for (index, (text, word)) in cases.iter().enumerate() {
         let scene = folder.file(&format!("bad-{index}.json"), text);

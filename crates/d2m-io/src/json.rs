@@ -1,6 +1,6 @@
 //! JSON files: faults name line, column and the word that is there; no key stands twice.
 
-use crate::{IoError, Place, excerpt};
+use crate::{IoError, Place, excerpt, short_value};
 use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
 
@@ -20,6 +20,16 @@ pub fn parse_json<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, IoError> {
         let word = word_at(&String::from_utf8_lossy(line), error.column());
         IoError::Content { place: Place::default(), reason: format!("{error}{word}") }
     })
+}
+
+/// The same of a file that holds an object with keys. A list is none: serde would take its values in the order of the keys.
+pub(crate) fn parse_object<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, IoError> {
+    let UniqueKeys(value) = parse_json(bytes)?;
+    if value.is_object() {
+        return parse_json(bytes);
+    }
+    let reason = format!("{} is not an object with keys", short_value(&value));
+    Err(IoError::Content { place: Place::default(), reason })
 }
 
 /// What is wrong with one line of a file of JSON lines: for the parser every line is the first, and the column at which it stops is the

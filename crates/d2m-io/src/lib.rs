@@ -15,11 +15,11 @@
 //!
 //! ## Motions and scenes
 //! - [`read_motion`]: the motion of a JSON file.
-//! - [`SceneFile`], [`SceneEntry`] and [`ScenePair`]: scenes; [`parse_scale`] and [`parse_start`]: keys of them.
+//! - [`SceneFile`], [`SceneEntry`], [`ScenePair`] and [`SceneTerms`]: scenes; [`parse_scale`] and [`parse_start`]: keys of them.
 //!
 //! ## Files of any kind
-//! [`read_bytes`] and [`read_unsized`]; [`parse_json`] with [`UniqueKeys`], [`json_fault`]; [`excerpt`] for
-//! messages.
+//! [`read_bytes`] and [`read_unsized`]; [`parse_json`] with [`UniqueKeys`], [`json_fault`]; [`excerpt`] and
+//! [`short_value`] for messages.
 //!
 //! ## Answers out
 //! What the command prints and a page shows, in one place:
@@ -44,6 +44,7 @@ mod motion;
 mod scene;
 mod scene_fault;
 mod scene_pair;
+mod scene_terms;
 mod text;
 mod write;
 
@@ -62,5 +63,6 @@ pub use mesh::{
 pub use motion::read_motion;
 pub use scene::{SceneEntry, SceneFile, parse_scale};
 pub use scene_pair::{ScenePair, parse_start};
-pub use text::excerpt;
+pub use scene_terms::SceneTerms;
+pub use text::{excerpt, short_value};
 pub use write::{glb_bytes, obj_text, ply_bytes};

@@ -1,9 +1,9 @@
 //! Scene files: bodies with their meshes and motions.
 
-use crate::scene_fault::{check_distance, fault};
-use crate::{
-    IoError, ReadOptions, ScenePair, UniqueKeys, parse_json, parse_start, read_bytes, read_mesh_with,
-};
+use crate::json::parse_object;
+use crate::scene_fault::{check_distance, fault, keys_of};
+use crate::scene_terms::TermsForm;
+use crate::{IoError, ReadOptions, ScenePair, SceneTerms, UniqueKeys, read_bytes, read_mesh_with};
 use d2m_bvh::{MeshTree, Start, Window};
 use d2m_motion::{AnyMotion, ConstantTwist};
 use glam::DVec3;
@@ -79,14 +79,14 @@ pub struct SceneEntry {
 #[serde(deny_unknown_fields)]
 struct SceneForm {
     #[serde(default)]
-    window: Option<[f64; 2]>,
+    window: Option<Value>,
     bodies: Vec<UniqueKeys>,
     #[serde(default)]
     ignore: Vec<UniqueKeys>,
     #[serde(default)]
-    min_separation: f64,
+    min_separation: Option<Value>,
     #[serde(default)]
-    tolerance: Option<f64>,
+    tolerance: Option<Value>,
     #[serde(default)]
     start: Option<Value>,
     #[serde(default)]
@@ -126,19 +126,9 @@ impl SceneFile {
     /// # Errors
     /// [`IoError`] with line and column or body, key and value.
     pub fn parse(bytes: &[u8]) -> Result<Self, IoError> {
-        let form: SceneForm = parse_json(bytes).map_err(|error| match error {
-            IoError::Content { place, reason } => IoError::Content { place, reason: hinted(reason) },
-            other => other,
-        })?;
-        let [start, end] = form.window.unwrap_or([0.0, 1.0]);
-        let window = Window::try_new(start, end).map_err(|error| fault("window", error))?;
-        let separation = form.min_separation;
-        check_distance("min_separation", separation)?;
-        if let Some(tolerance) =
-            form.tolerance.filter(|tolerance| !(*tolerance > 0.0 && tolerance.is_finite()))
-        {
-            return Err(fault("tolerance", format!("{tolerance:?} is not a positive finite distance")));
-        }
+        let form: SceneForm = parse_object(bytes).map_err(hinted)?;
+        let SceneForm { window, min_separation, tolerance, start, .. } = form;
+        let terms = SceneTerms::checked(TermsForm { window, min_separation, tolerance, start })?;
         let mut bodies: Vec<SceneEntry> = Vec::with_capacity(form.bodies.len());
         let mut names: BTreeMap<String, usize> = BTreeMap::new();
         for (index, UniqueKeys(value)) in form.bodies.into_iter().enumerate() {
@@ -164,15 +154,14 @@ impl SceneFile {
             }
             ignore.push(pair);
         }
-        let start = parse_start(form.start.as_ref()).map_err(|reason| fault("start", reason))?;
         let names: BTreeSet<&str> = names.keys().map(String::as_str).collect();
         let pairs = ScenePair::parse_all(form.pairs, &names)?;
-        let tolerance = form.tolerance;
+        let SceneTerms { window, min_separation, tolerance, start } = terms;
         Ok(Self {
-            window,
+            window: window.unwrap_or(Window::UNIT),
             bodies,
             ignore,
-            min_separation: separation,
+            min_separation: min_separation.unwrap_or_default(),
             tolerance,
             start: start.unwrap_or_default(),
             pairs,
@@ -194,8 +183,7 @@ impl SceneEntry {
     /// # Errors
     /// [`IoError::Content`] with the place, key and value.
     pub fn parse(value: Value, place: &str) -> Result<Self, IoError> {
-        let form: EntryForm =
-            serde_json::from_value(value).map_err(|error| fault(place, hinted(error.to_string())))?;
+        let form: EntryForm = keys_of(place, value).map_err(hinted)?;
         if form.name.is_empty() {
             return Err(fault(place, "the name is empty"));
         }
@@ -237,12 +225,16 @@ impl SceneEntry {
 }
 
 /// A fault of a scene that may be a simulation.
-fn hinted(text: String) -> String {
+fn hinted(error: IoError) -> IoError {
     const OF_SIMULATIONS: [&str; 6] = ["simulation", "kind", "density", "mass", "joints", "velocity"];
-    if OF_SIMULATIONS.iter().any(|key| text.contains(&format!("unknown field `{key}`"))) {
-        format!("{text}; a simulation is run by d2m simulate SCENE.json --out RUN.jsonl")
-    } else {
-        text
+    let is_of_one =
+        |text: &str| OF_SIMULATIONS.iter().any(|key| text.contains(&format!("unknown field `{key}`")));
+    match error {
+        IoError::Content { place, reason } if is_of_one(&reason) => {
+            let reason = format!("{reason}; a simulation is run by d2m simulate SCENE.json --out RUN.jsonl");
+            IoError::Content { place, reason }
+        }
+        other => other,
     }
 }
 

@@ -1,6 +1,6 @@
 //! What single pairs of a scene have of their own.
 
-use crate::scene_fault::{check_distance, fault};
+use crate::scene_fault::{check_not_negative, fault, keys_of};
 use crate::{IoError, UniqueKeys};
 use d2m_bvh::Start;
 use serde::Deserialize;
@@ -75,7 +75,7 @@ impl ScenePair {
     }
 
     fn parse(value: Value, place: &str, names: &BTreeSet<&str>) -> Result<Self, IoError> {
-        let form: PairForm = serde_json::from_value(value).map_err(|error| fault(place, error))?;
+        let form: PairForm = keys_of(place, value)?;
         for (key, name) in [("a", &form.a), ("b", &form.b)] {
             if !names.contains(name.as_str()) {
                 return Err(fault(format!("{place}, {key}"), format!("{name:?} is the name of no body")));
@@ -86,8 +86,10 @@ impl ScenePair {
         }
         let key = |key: &str| format!("{place}, {key}");
         let start = parse_start(form.start.as_ref()).map_err(|reason| fault(key("start"), reason))?;
-        for (name, value) in [("min_separation", form.min_separation), ("friction", form.friction)] {
-            value.map_or(Ok(()), |value| check_distance(&key(name), value))?;
+        for (name, what, value) in
+            [("min_separation", "distance", form.min_separation), ("friction", "coefficient", form.friction)]
+        {
+            value.map_or(Ok(()), |value| check_not_negative(&key(name), what, value))?;
         }
         if let Some(value) = form.restitution.filter(|value| !(0.0..=1.0).contains(value)) {
             return Err(fault(key("restitution"), format!("{value:?} is not from 0 to 1")));

@@ -1,6 +1,10 @@
 //! Words and numbers of texts.
 
 use d2m_bvh::MAX_COORDINATE;
+use serde_json::Value;
+
+/// Characters of a file in a message, at most.
+const MOST_CHARACTERS: usize = 60;
 
 /// A coordinate of a text, correctly rounded whatever its number of digits.
 pub(crate) fn coordinate(axis: &str, word: Option<&str>) -> Result<f64, String> {
@@ -25,6 +29,20 @@ pub(crate) fn check_coordinate(axis: &str, value: f64) -> Result<(), String> {
     Ok(())
 }
 
+/// The start of a JSON value, as messages show it.
+///
+/// ```
+/// assert_eq!(d2m_io::short_value(&serde_json::json!(["a", 1])), "[\"a\",1]");
+/// assert_eq!(d2m_io::short_value(&vec![7; 100].into()).chars().count(), 61);
+/// ```
+pub fn short_value(value: &Value) -> String {
+    let text = value.to_string();
+    match text.char_indices().nth(MOST_CHARACTERS) {
+        None => text,
+        Some((end, _)) => format!("{}…", &text[..end]),
+    }
+}
+
 /// Words of a file in quotes, as messages show them: at most 60 characters, because damaged files have long ones.
 ///
 /// ```
@@ -32,7 +50,6 @@ pub(crate) fn check_coordinate(axis: &str, value: f64) -> Result<(), String> {
 /// assert_eq!(d2m_io::excerpt(&"x".repeat(100)).chars().count(), 63);
 /// ```
 pub fn excerpt(text: &str) -> String {
-    const MOST_CHARACTERS: usize = 60;
     match text.char_indices().nth(MOST_CHARACTERS) {
         None => format!("{text:?}"),
         Some((end, _)) => format!("{:?}…", &text[..end]),

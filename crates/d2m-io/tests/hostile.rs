@@ -178,9 +178,25 @@ fn scenes_are_refused_with_their_place() {
         ("[0, 2]", "[2, 0]", "window: time window [2.0, 0.0]"),
         ("0.5,", "-1,", "min_separation: -1.0 is not a finite distance"),
         ("1e-9", "0", "tolerance: 0.0 is not a positive finite distance"),
+        ("1e-9", "\"fine\"", "tolerance: invalid type: string \"fine\""),
         ("\"b\"", "\"a\"", "body 1: the name \"a\" is that of body 0 too"),
         ("[1, 2, 3]", "[1, 2]", "body 0 (\"a\"), scale: [1,2] is neither a number nor a list of three"),
         ("\"w\"", "\"z\"", "body 0 (\"a\"), motion: unknown field `z`"),
+        (
+            "{\"w\": [0, 0, 1]}",
+            "[]",
+            "body 0 (\"a\"), motion: invalid type: sequence, expected an object with keys",
+        ),
+        (
+            "\"ignore\": [[\"a\", \"g\"]]",
+            "\"pairs\": [[\"a\", \"b\"]]",
+            "pairs, entry 0: [\"a\",\"b\"] is not an object with keys",
+        ),
+        (
+            "{\"name\": \"b\", \"mesh\": \"shape:box\", \"solid\": false}",
+            "[\"b\", \"shape:box\"]",
+            "body 1: [\"b\",\"shape:box\"] is not an object",
+        ),
         ("[\"a\", \"g\"]", "[\"a\", \"q\"]", "ignore 0: \"q\" is the name of no body and of no group"),
         ("\"solid\"", "\"kind\"", "body 1 (\"b\"): unknown field `kind`"),
     ] {
@@ -190,6 +206,9 @@ fn scenes_are_refused_with_their_place() {
         let named = found.in_file("s.json").to_string();
         assert!(named.starts_with("s.json, "), "{named}");
     }
+    let list =
+        SceneFile::parse(br#"[[0, 1], [{"name": "a", "mesh": "shape:box"}]]"#).unwrap_err().to_string();
+    assert!(list.contains("is not an object with keys"), "{list}");
     let deep = format!("{{\"bodies\": {}", "[".repeat(100_000));
     assert!(SceneFile::parse(deep.as_bytes()).unwrap_err().to_string().contains("recursion limit"));
 }

@@ -266,6 +266,20 @@ fn faults_of_chains_name_joint_and_value() {
     let read = |text: &str| serde_json::from_str::<AnyMotion>(text).map_err(|error| error.to_string());
     for (text, expected) in [
         (r#"{"chain": []}"#, "chain: it is empty"),
+        // Keys are read from objects, never from lists.
+        ("[]", "sequence, expected an object with keys"),
+        ("[[1, 2, 3]]", "sequence, expected an object with keys"),
+        (r#"{"chain": [[]]}"#, "sequence, expected an object with keys"),
+        (r#"{"times": [0, 1], "poses": [[], {}]}"#, "sequence, expected an object with keys"),
+        (r#"{"times": [0, 1], "spans": [[]]}"#, "sequence, expected an object with keys"),
+        (
+            r#"{"times": [0, 1], "poses": [{}, {}], "join": "cubic", "twists": [{}, []]}"#,
+            "sequence, expected an object with keys",
+        ),
+        (
+            r#"{"chain": [{"joint": "revolute", "axis": [0,0,1], "value": [[0, 1], [[0, 1]]]}]}"#,
+            "expected a polynomial",
+        ),
         (r#"{"chain": [{"joint": "spherical"}]}"#, "chain[0], joint: \"spherical\" is unknown"),
         (
             r#"{"chain": [{"joint": "fixed"}, {"joint": "revolute", "axis": [0,0,0], "value": [1]}]}"#,

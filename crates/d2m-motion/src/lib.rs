@@ -67,6 +67,8 @@ mod sequence;
 mod serde_any;
 #[cfg(feature = "serde")]
 mod serde_form;
+#[cfg(feature = "serde")]
+mod serde_object;
 mod sin_cos;
 mod span_motion;
 mod spline;

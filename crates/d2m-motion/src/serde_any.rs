@@ -4,7 +4,7 @@ use crate::serde_form::{ConstantTwistForm, identity};
 use crate::spline::Knot;
 use crate::{
     AnyMotion, Chain, ConstantTwist, Joint, JointKind, JointPoints, JointValue, Keyframes, MotionError, Pose,
-    Span, Spline, SplineDegree, Twist,
+    Span, Spline, SplineDegree, Twist, serde_object,
 };
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
@@ -27,15 +27,15 @@ struct AnyForm {
     t: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     times: Option<Vec<f64>>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "serde_object::list")]
     poses: Option<Vec<PoseForm>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     join: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "serde_object::list")]
     twists: Option<Vec<TwistForm>>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "serde_object::list")]
     spans: Option<Vec<ConstantTwistForm>>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "serde_object::list")]
     chain: Option<Vec<JointForm>>,
 }
 
@@ -87,8 +87,8 @@ fn quaternion([w, x, y, z]: [f64; 4]) -> DQuat {
 )]
 enum ValueForm {
     Polynomial(Vec<f64>),
-    Pieces(PiecesForm),
-    Points(JointPoints),
+    Pieces(#[serde(deserialize_with = "serde_object::one")] PiecesForm),
+    Points(#[serde(deserialize_with = "serde_object::one")] JointPoints),
 }
 
 #[derive(Serialize, Deserialize)]
@@ -333,7 +333,7 @@ impl TryFrom<AnyForm> for AnyMotion {
 
 impl<'de> Deserialize<'de> for AnyMotion {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        AnyForm::deserialize(deserializer)?.try_into().map_err(D::Error::custom)
+        serde_object::one::<AnyForm, D>(deserializer)?.try_into().map_err(D::Error::custom)
     }
 }
 

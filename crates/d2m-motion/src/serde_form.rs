@@ -1,5 +1,5 @@
 //! The serde forms of the motion types: the same keys as the text form, checked on the way in.
-use crate::{ConstantTwist, MotionError, ScrewMotion};
+use crate::{ConstantTwist, MotionError, ScrewMotion, serde_object};
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
@@ -66,7 +66,7 @@ impl Serialize for ConstantTwist {
 
 impl<'de> Deserialize<'de> for ConstantTwist {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        ConstantTwistForm::deserialize(deserializer)?.try_into().map_err(D::Error::custom)
+        serde_object::one::<ConstantTwistForm, D>(deserializer)?.try_into().map_err(D::Error::custom)
     }
 }
 

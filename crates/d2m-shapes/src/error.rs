@@ -60,7 +60,7 @@ pub enum ShapeError {
         text: String,
     },
     /// A number outside the parameter's range.
-    #[error("shape {shape}: {name}={value} is out of range, it must be {whole}from {low} to {high}", whole = if *.integer { "a whole number " } else { "" })]
+    #[error("shape {shape}: {name}={value:?} is out of range, it must be {whole}from {low} to {high}", whole = if *.integer { "a whole number " } else { "" })]
     OutOfRange {
         /// The shape.
         shape: &'static str,

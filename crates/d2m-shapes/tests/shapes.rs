@@ -233,6 +233,7 @@ fn refusals_say_what_is_wrong() {
         message("torus?triangles=20.5"),
         "shape torus: triangles=20.5 is out of range, it must be a whole number from 18 to 20000000"
     );
+    assert!(message("gear?teeth=1e300").starts_with("shape gear: teeth=1e300 is out of range"));
     for value in ["nan", "inf", "-1", "1e300"] {
         assert!(
             matches!(mesh(&format!("torus?tube={value}")), Err(ShapeError::OutOfRange { .. })),

@@ -141,13 +141,13 @@ fn far_turns<'p>(path: &'p Trajectory, scene: &'p RobotScene) -> impl Iterator<I
 
 fn options(arguments: &RobotArguments, file: Option<&RobotSceneFile<'_>>) -> Result<QueryOptions, Failure> {
     let mut options = QueryOptions::default();
-    if let Some(distance) = file.and_then(|file| file.min_separation) {
+    if let Some(distance) = file.and_then(|file| file.terms.min_separation) {
         options = options.with_min_separation(distance);
     }
-    if let Some(tolerance) = file.and_then(|file| file.tolerance) {
+    if let Some(tolerance) = file.and_then(|file| file.terms.tolerance) {
         options = options.with_tolerance(tolerance);
     }
-    if let Some(start) = file.and_then(|file| file.start) {
+    if let Some(start) = file.and_then(|file| file.terms.start) {
         options = options.with_start(start);
     }
     if let Some(text) = &arguments.min_separation {

@@ -5,7 +5,7 @@ use crate::engine::{number, threads};
 use crate::failure::Failure;
 use crate::output::{Output, Stream, note, progress_bar};
 use crate::report::duration;
-use crate::simulation::{Line, MOST_STEPS, SimulatedScene, Thinner, header, read_scene, segment};
+use crate::simulation::{Line, SimulatedScene, Thinner, are_told_apart, header, read_scene, segment};
 use d2m_dynamics::{BodyId, Segment, StepError};
 use std::time::{Duration, Instant};
 
@@ -18,7 +18,7 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<(), Failure> {
     let every = arguments.every.as_ref().map(|text| number("--every", text, "a positive time", |t| t > 0.0));
     let every = every.transpose()?;
     let scene = read_scene(&arguments.scene)?;
-    if let Some(every) = every.filter(|every| scene.end / every > MOST_STEPS) {
+    if let Some(every) = every.filter(|&every| !are_told_apart(every, scene.end)) {
         let end = scene.end;
         return Err(Failure::at(
             "--every",

@@ -1,6 +1,8 @@
 //! Objects of a scene file, read strictly: what is unknown or unusable is named with its place.
 
 use crate::failure::Failure;
+use d2m_io::SceneTerms;
+pub(crate) use d2m_io::short_value as short;
 use glam::{DMat3, DQuat, DVec3};
 use serde_json::{Map, Value};
 
@@ -26,6 +28,18 @@ impl<'v> Fields<'v> {
     pub(crate) fn without(&self, keys: &[&str]) -> Value {
         let others = self.object.iter().filter(|(key, _)| !keys.contains(&key.as_str()));
         Value::Object(others.map(|(key, value)| (key.clone(), value.clone())).collect())
+    }
+
+    /// The object with these keys only.
+    pub(crate) fn only(&self, keys: &[&str]) -> Value {
+        let some = self.object.iter().filter(|(key, _)| keys.contains(&key.as_str()));
+        Value::Object(some.map(|(key, value)| (key.clone(), value.clone())).collect())
+    }
+
+    /// What a scene says of all its pairs.
+    pub(crate) fn terms(&self) -> Result<SceneTerms, Failure> {
+        let terms = SceneTerms::parse(self.only(&["window", "min_separation", "tolerance", "start"]));
+        terms.map_err(|error| error.in_file(&self.place).into())
     }
 
     pub(crate) fn place(&self) -> &str {
@@ -118,11 +132,4 @@ impl<'v> Fields<'v> {
 
 fn number(value: &Value) -> Option<f64> {
     value.as_f64().filter(|number| number.is_finite())
-}
-
-/// The start of a value, for messages.
-pub(crate) fn short(value: &Value) -> String {
-    const MOST: usize = 60;
-    let text = value.to_string();
-    if text.chars().count() <= MOST { text } else { text.chars().take(MOST).chain("…".chars()).collect() }
 }

@@ -8,5 +8,5 @@ mod thinning;
 
 pub(crate) use fields::{Fields, short};
 pub(crate) use run_file::{Line, header, segment};
-pub(crate) use scene::{MOST_STEPS, SimulatedScene, read_scene};
+pub(crate) use scene::{SimulatedScene, are_told_apart, read_scene};
 pub(crate) use thinning::Thinner;

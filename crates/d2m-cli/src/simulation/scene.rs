@@ -13,7 +13,7 @@ use d2m::motion::AnyMotion;
 use d2m_dynamics::{
     Body, BodyId, Damping, Kind, Mass, MassProperties, Motion, Simulation, SimulationOptions,
 };
-use d2m_io::{SceneEntry, ScenePair, UniqueKeys, parse_start};
+use d2m_io::{SceneEntry, ScenePair, UniqueKeys};
 use glam::{DMat3, DVec3};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -73,7 +73,8 @@ pub(crate) fn read_scene(path: &Path) -> Result<SimulatedScene, Failure> {
         serde_json::from_slice(&bytes).map_err(|error| Failure::at(path.display(), error))?;
     let scene = Fields::new(path.display().to_string(), &value, SCENE_KEYS)?;
     warn_of_json(scene.place(), &value);
-    parse_start(scene.get("start")).map_err(|reason| scene.fault("start", reason))?;
+    // They say nothing of a simulation, but what they say has to be something.
+    scene.terms()?;
     let Settings { options, end, threads } = settings(&scene)?;
     let mut simulation = Simulation::new(options).map_err(|error| Failure::at(path.display(), error))?;
     scene.required("bodies")?;
@@ -104,8 +105,11 @@ pub(crate) fn read_scene(path: &Path) -> Result<SimulatedScene, Failure> {
 /// Threads at most, as for `--threads`.
 const MOST_THREADS: u16 = 1024;
 
-/// Steps of a run at most: as many as doubles count.
-pub(crate) const MOST_STEPS: f64 = 9_007_199_254_740_992.0; // 2⁵³
+/// Does time tell such steps apart, all the way to the end? Multiples of a step that is longer than the way from the end to the next double
+/// are never rounded to the same one, since doubles before the end are no further apart. They are fewer than 2⁵³.
+pub(crate) fn are_told_apart(step: f64, end: f64) -> bool {
+    step > end.next_up() - end
+}
 
 /// What the key `simulation` says.
 struct Settings {
@@ -153,11 +157,10 @@ fn settings(scene: &Fields<'_>) -> Result<Settings, Failure> {
         }
     };
     let end = positive("end", 5.0)?;
-    if end / options.step > MOST_STEPS {
-        let value = options.step;
-        return Err(
-            fields.fault("step", format!("{value:?} divides the time until {end:?} in too many steps"))
-        );
+    if !are_told_apart(options.step, end) {
+        let (step, next) = (options.step, end.next_up() - end);
+        let reason = format!("{step:?} is too short: doubles at the end {end:?} are {next:?} apart");
+        return Err(fields.fault("step", reason));
     }
     Ok(Settings { options, end, threads })
 }
