@@ -5,6 +5,7 @@ use crate::held::Held;
 use crate::numbers::{Numbers, is_small, is_turn};
 use crate::quiet::Quiet;
 use crate::rigid_body::{RigidBody, Role, Target};
+use crate::shown::{shown, shown_turn};
 use crate::{BodyId, Motion, SimulationError};
 use d2m_bvh::{MeshTree, Solid};
 use d2m_motion::{ConstantTwist, RigidMotion};
@@ -201,24 +202,24 @@ impl BodyState {
         };
         numbers.check()?;
         if !is_turn(self.orientation) {
-            return bad("orientation", self.orientation.to_string());
+            return bad("orientation", shown_turn(self.orientation));
         }
         let velocities = [
             ("velocity of the flight", self.flight.linear_velocity()),
             ("angular velocity of the flight", self.flight.angular_velocity()),
         ];
         if let Some((name, value)) = velocities.into_iter().find(|(_, v)| !is_small(*v)) {
-            return bad(name, value.to_string());
+            return bad(name, shown(value.to_array()));
         }
         if !(self.time.is_finite() && self.time <= now) {
-            return bad("time", self.time.to_string());
+            return bad("time", shown([self.time]));
         }
         if let Some(horizon) = self.horizon.filter(|horizon| !(horizon.is_finite() && *horizon >= self.time))
         {
-            return bad("end of the flight", horizon.to_string());
+            return bad("end of the flight", shown([horizon]));
         }
         if !self.gained.is_finite() {
-            return bad("account of energy", self.gained.to_string());
+            return bad("account of energy", shown([self.gained]));
         }
         // Flights are counted up.
         if self.version > u64::MAX / 2 {

@@ -1,5 +1,6 @@
 //! Bodies of several meshes.
 
+use crate::shown::{shown, shown_turn};
 use crate::{Body, Mass, MassProperties, SimulationError};
 use d2m_bvh::{MeshTree, TriMesh};
 use glam::{DQuat, DVec3};
@@ -69,7 +70,10 @@ impl Body {
         for (k, part) in parts.iter().enumerate() {
             let norm = part.orientation.length();
             if !(norm.is_finite() && norm > 0.0 && part.position.is_finite()) {
-                return Err(bad("place of part", format!("{k}: {}, {}", part.position, part.orientation)));
+                return Err(bad(
+                    "place of part",
+                    format!("{k}: {}, {}", shown(part.position.to_array()), shown_turn(part.orientation)),
+                ));
             }
             let turn = part.orientation.normalize();
             let placed: Vec<DVec3> = part.mesh.vertices().iter().map(|v| turn * *v + part.position).collect();

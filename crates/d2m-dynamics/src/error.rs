@@ -1,5 +1,6 @@
 //! What can be wrong with a body, a scene or a step.
 
+use crate::shown::{rows, shown};
 use d2m_bvh::QueryError;
 use d2m_motion::OutsideDomain;
 use glam::{DMat3, DVec3};
@@ -29,21 +30,22 @@ pub enum MassError {
         value: f64,
     },
     /// The center of mass is not finite.
-    #[error("center {value} must be finite")]
+    #[error("center {} must be finite", shown(value.to_array()))]
     Center {
         /// The refused value.
         value: DVec3,
     },
     /// The inertia is not symmetric and positive definite.
-    #[error("inertia {value} must be finite, symmetric and positive definite")]
+    #[error("inertia {:?} must be finite, symmetric and positive definite", rows(value))]
     Inertia {
-        /// The refused value.
+        /// The refused value; messages have its rows, as files do.
         value: DMat3,
     },
     /// No body has such an inertia: it is ∫ (|x|² 1 − x xᵀ) dm of a mass that is nowhere negative only if no principal moment exceeds
     /// the sum of the other two.
     #[error(
-        "inertia: the principal moments {moments} are those of no body, since the largest exceeds the sum of the others"
+        "inertia: the principal moments {} are those of no body, since the largest exceeds the sum of the others",
+        shown(moments.to_array())
     )]
     NoSuchBody {
         /// The principal moments, ascending, to rounding.
@@ -51,7 +53,9 @@ pub enum MassError {
     },
     /// The surface has an edge that not as many triangles run through one way as the other.
     #[error(
-        "the mesh is open or not consistently oriented at the edge from {from} to {to}: give mass, center and inertia"
+        "the mesh is open or not consistently oriented at the edge from {} to {}: give mass, center and inertia",
+        shown(from.to_array()),
+        shown(to.to_array())
     )]
     Open {
         /// One end of the edge, mesh frame.
@@ -68,6 +72,18 @@ pub enum MassError {
         first: usize,
         /// A triangle of the other part.
         second: usize,
+    },
+    /// A density or a mass with which the inertia of the mesh, or its inverse, is no number.
+    #[error(
+        "{name} {value:?}: with the volume of {volume:?} that the mesh encloses no inertia of it is a number"
+    )]
+    BeyondNumbers {
+        /// Which of the two was given.
+        name: &'static str,
+        /// The refused value.
+        value: f64,
+        /// The volume, rounded.
+        volume: f64,
     },
     /// The mesh encloses no volume, up to rounding.
     #[error("the mesh encloses a volume of {value:?}, so it has no mass: give mass, center and inertia")]
@@ -148,7 +164,7 @@ pub enum SimulationError {
         error: MassError,
     },
     /// Two bodies share a point, or are not proven apart, before anything has moved.
-    #[error("bodies {a} and {b} intersect at the start: by about {depth:.3e}, near {point}")]
+    #[error("bodies {a} and {b} intersect at the start: by about {depth:.3e}, near {}", shown(point.to_array()))]
     Intersecting {
         /// The first body's name.
         a: String,
@@ -161,7 +177,8 @@ pub enum SimulationError {
     },
     /// The velocity of a body that is not dynamic: it would be ignored, since a kinematic body has it from its motion.
     #[error(
-        "body {body}: {name} {value} would be ignored: the body is not dynamic, and a kinematic one has its velocity from its motion"
+        "body {body}: {name} {} would be ignored: the body is not dynamic, and a kinematic one has its velocity from its motion",
+        shown(value.to_array())
     )]
     VelocityWithoutMotion {
         /// The body's name.
@@ -173,7 +190,10 @@ pub enum SimulationError {
     },
     /// An impulse, force or torque that is not finite, or that gives a body momenta or velocities above
     /// [`LARGEST`](crate::Simulation::LARGEST).
-    #[error("body {body}: {name} {value} is too large: momenta and velocities must stay below 1e100")]
+    #[error(
+        "body {body}: {name} {} is too large: momenta and velocities must stay below 1e100",
+        shown(value.to_array())
+    )]
     TooLarge {
         /// The body's name.
         body: String,
@@ -248,7 +268,7 @@ pub enum StepError {
     /// Kinematic bodies crush a dynamic body. That is proven: there are multipliers of the contacts of all that is squeezed, as they were
     /// measured, whose combination no motion obeys (Farkas) that is no more than 128 times as fast as what closes in, while that uses up what
     /// room is left.
-    #[error("at time {time}: body {pushing} crushes body {crushed}, which cannot give way")]
+    #[error("at time {time:?}: body {pushing} crushes body {crushed}, which cannot give way")]
     Crushed {
         /// The kinematic body.
         pushing: String,
@@ -259,7 +279,7 @@ pub enum StepError {
     },
     /// A kinematic body comes down on a dynamic one, and neither room for that nor a proof that there is none was found.
     #[error(
-        "at time {time}: body {pushing} corners body {cornered}: neither room for it nor a proof that there is none was found"
+        "at time {time:?}: body {pushing} corners body {cornered}: neither room for it nor a proof that there is none was found"
     )]
     Cornered {
         /// The kinematic body.
@@ -272,7 +292,7 @@ pub enum StepError {
     /// A kinematic body turns or speeds up so fast that flights of constant twists, 4096 in a step, stay no closer to its motion than
     /// a hundredth of the gap; or its motion encloses itself too widely to show it. Or the flight of any body is beyond the numbers.
     #[error(
-        "at time {time}: body {body} moves too fast, or too unevenly, for the step: take a shorter step or a wider gap"
+        "at time {time:?}: body {body} moves too fast, or too unevenly, for the step: take a shorter step or a wider gap"
     )]
     TooFast {
         /// The body.

@@ -1,5 +1,6 @@
 //! Questions about the bodies where they are now.
 
+use crate::shown::shown;
 use crate::{BodyId, Simulation};
 use d2m_bvh::{
     Contact, Distance, DistanceOptions, Evidence, MeshError, MeshTree, Posed, QueryError, QueryOptions,
@@ -216,7 +217,7 @@ impl Frozen {
 #[non_exhaustive]
 pub enum RayError {
     /// Its numbers are not finite.
-    #[error("a ray from {origin} along {way} cannot be followed")]
+    #[error("a ray from {} along {} cannot be followed", shown(origin.to_array()), shown(way.to_array()))]
     BadRay {
         /// Where it begins.
         origin: DVec3,

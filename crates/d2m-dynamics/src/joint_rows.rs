@@ -5,6 +5,7 @@ use crate::contact::{ContactPoint, JointRow, Law, Material, tangents};
 use crate::joint::{Joint, JointKind, MotorTarget};
 use crate::numbers::is_small;
 use crate::rigid_body::RigidBody;
+use crate::shown::{shown, shown_turn};
 use crate::turning::rotation_vector;
 use d2m_feature::FeaturePair;
 use glam::{BVec3, DQuat, DVec3};
@@ -51,11 +52,11 @@ impl Joined {
         Self::check_numbers(joint, [a, b])?;
         let axis = joint.axis.normalize_or_zero();
         if places[0] == places[1] || !(a.is_dynamic() || b.is_dynamic()) {
-            return bad("pair", "two bodies, at least one of them dynamic, are asked for".to_owned());
+            return bad("pair", "without a dynamic body, or of a body with itself,".to_owned());
         }
         let is_locked = matches!(joint.kind, JointKind::Locked { .. });
         if is_locked && joint.b.is_some() {
-            return bad("second body", "of locks: only the world".to_owned());
+            return bad("second body", "of a lock, which holds to the world only,".to_owned());
         }
         let point = if is_locked { a.position } else { joint.point };
         let own = |body: &RigidBody, v: DVec3| body.orientation.conjugate() * v;
@@ -76,10 +77,10 @@ impl Joined {
             Err(SimulationError::BadJoint { a: a.name.to_string(), b: b.name.to_string(), name, value })
         };
         if !joint.point.is_finite() {
-            return bad("point", joint.point.to_string());
+            return bad("point", shown(joint.point.to_array()));
         }
         if !joint.axis.is_finite() || joint.axis.normalize_or_zero() == DVec3::ZERO {
-            return bad("axis", joint.axis.to_string());
+            return bad("axis", shown(joint.axis.to_array()));
         }
         if let Some(limits) = joint.limits.filter(|[lo, hi]| !(lo.is_finite() && hi.is_finite() && lo <= hi))
         {
@@ -105,7 +106,7 @@ impl Joined {
         let numbers = motor.chain(spring).chain([("friction", joint.friction)]);
         for (name, value) in numbers {
             if !(value.is_finite() && value >= 0.0) {
-                return bad(name, value.to_string());
+                return bad(name, shown([value]));
             }
         }
         Ok(())
@@ -122,9 +123,9 @@ impl Joined {
         } else if !self.arms.iter().all(|arm| is_small(*arm)) {
             Some(("arms", format!("{:?}", self.arms)))
         } else if !(self.axes.iter().all(|axis| axis.is_normalized()) && self.turn.is_normalized()) {
-            Some(("axes", format!("{:?}, {}", self.axes, self.turn)))
+            Some(("axes", format!("{:?}, {}", self.axes, shown_turn(self.turn))))
         } else {
-            (!is_small(DVec3::splat(self.value))).then(|| ("value", self.value.to_string()))
+            (!is_small(DVec3::splat(self.value))).then(|| ("value", shown([self.value])))
         };
         fault.map_or(Ok(()), |(name, value)| {
             Err(SimulationError::BadJoint { a: a.name.to_string(), b: b.name.to_string(), name, value })

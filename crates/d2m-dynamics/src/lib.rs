@@ -73,6 +73,7 @@ mod quiet;
 mod rebuilt;
 mod record;
 mod rigid_body;
+mod shown;
 mod simulation;
 mod sleep;
 mod snapshot;

@@ -4,6 +4,7 @@ use crate::body::{Damping, Groups, Kind};
 use crate::contact::Material;
 use crate::numbers::{Fault, material_fault};
 use crate::rigid_body::{RigidBody, Target};
+use crate::shown::{shown, shown_turn};
 use crate::velocity::Velocity;
 use crate::{BodyId, Motion, Simulation, SimulationError};
 use d2m_motion::Pose;
@@ -44,12 +45,18 @@ impl Simulation {
         let bad =
             |value: String| SimulationError::BadBody { body: own.name.to_string(), name: "pose", value };
         if own.is_kinematic() {
-            return Err(bad(format!("{} of a body that follows its motion", pose.translation)));
+            return Err(bad(format!(
+                "{} of a body that follows its motion",
+                shown(pose.translation.to_array())
+            )));
         }
-        let Target { position, orientation } =
-            target(own, pose).ok_or_else(|| bad(format!("{}, {}", pose.translation, pose.rotation)))?;
+        let Target { position, orientation } = target(own, pose).ok_or_else(|| {
+            bad(format!("{}, {}", shown(pose.translation.to_array()), shown_turn(pose.rotation)))
+        })?;
         let moved = own.moved(position, orientation, self.time);
-        let moved = moved.ok_or_else(|| bad(format!("{}, {}", pose.translation, pose.rotation)))?;
+        let moved = moved.ok_or_else(|| {
+            bad(format!("{}, {}", shown(pose.translation.to_array()), shown_turn(pose.rotation)))
+        })?;
         let Velocity { linear, angular } = moved.velocity();
         moved.check_momenta([("velocity", linear), ("angular velocity", angular)], [DVec3::ZERO; 2])?;
         self.replace(place, moved)
@@ -213,7 +220,7 @@ impl Simulation {
         let place = self.place(body);
         if !velocity.is_finite() {
             let body = self.bodies[place].name.to_string();
-            let (name, value) = ("surface velocity", velocity.to_string());
+            let (name, value) = ("surface velocity", shown(velocity.to_array()));
             return Err(SimulationError::BadBody { body, name, value });
         }
         self.bodies[place].surface_velocity = velocity;

@@ -1,6 +1,7 @@
 //! Which numbers of bodies can be used, whether they are given or read.
 
 use crate::SimulationError;
+use crate::shown::{shown, shown_turn};
 use glam::{DQuat, DVec3};
 
 /// No momentum, angular momentum or velocity of a body may exceed this: their products are still numbers.
@@ -27,18 +28,18 @@ impl Numbers<'_> {
             Err(SimulationError::BadBody { body: self.body.to_owned(), name, value })
         };
         if let Some((name, value)) = self.vectors.iter().find(|(_, v)| !v.is_finite()) {
-            return bad(name, value.to_string());
+            return bad(name, shown(value.to_array()));
         }
         let norm = self.orientation.length();
         if !(norm.is_finite() && norm > 0.0) {
-            return bad("orientation", self.orientation.to_string());
+            return bad("orientation", shown_turn(self.orientation));
         }
         if let Some(Fault { name, value, .. }) = material_fault(self.restitution, self.friction) {
-            return bad(name, value.to_string());
+            return bad(name, shown([value]));
         }
         for (name, value) in self.not_negative {
             if !(value.is_finite() && *value >= 0.0) {
-                return bad(name, value.to_string());
+                return bad(name, shown([*value]));
             }
         }
         Ok(())

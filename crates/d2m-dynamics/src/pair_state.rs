@@ -8,6 +8,7 @@ use crate::momenta::Momenta;
 use crate::numbers::{is_small, is_turn, is_unit, material_fault};
 use crate::pairs::{Attempts, Pair, distance_of};
 use crate::rigid_body::{RigidBody, Target};
+use crate::shown::shown;
 use d2m_bvh::PairCache;
 use d2m_feature::FeaturePair;
 use d2m_motion::Pose;
@@ -124,29 +125,29 @@ impl PairState {
         let is_way = |x: &f64| x.is_finite() && *x > 0.0;
         let is_place = |place: &Target| is_small(place.position) && is_turn(place.orientation);
         if !is_way(&self.gap) {
-            return Some(("gap", self.gap.to_string()));
+            return Some(("gap", shown([self.gap])));
         }
         if let Some(nearest) = self.nearest.filter(|nearest| !is_way(nearest)) {
-            return Some(("least distance", nearest.to_string()));
+            return Some(("least distance", shown([nearest])));
         }
         if let Some(measured) = self.measured.filter(|measured| !measured.is_finite()) {
-            return Some(("time of the last measurement", measured.to_string()));
+            return Some(("time of the last measurement", shown([measured])));
         }
         if !(self.reach > 0.0 && self.reach <= 1.0) {
-            return Some(("reach", self.reach.to_string()));
+            return Some(("reach", shown([self.reach])));
         }
         if let Some(normal) = self.normal.filter(|normal| !is_unit(*normal)) {
-            return Some(("normal", normal.to_string()));
+            return Some(("normal", shown(normal.to_array())));
         }
         if !(self.apart >= 0.0 && self.apart.is_finite()) {
-            return Some(("distance", self.apart.to_string()));
+            return Some(("distance", shown([self.apart])));
         }
         if !self.axes.is_counted() {
             return Some(("attempts", format!("{:?}", self.axes)));
         }
         let borne = self.borne.iter().chain(&self.owed).flat_map(|borne| [borne.linear, borne.angular]);
         if let Some(borne) = borne.into_iter().find(|borne| !is_small(*borne)) {
-            return Some(("what bodies that sleep bear", borne.to_string()));
+            return Some(("what bodies that sleep bear", shown(borne.to_array())));
         }
         let place = self.clearance.iter().flat_map(|known| &known.places).find(|place| !is_place(place));
         if let Some(place) = place {
@@ -159,10 +160,10 @@ impl PairState {
 impl ContactState {
     fn fault(&self) -> Option<(&'static str, String)> {
         if !self.normal.is_normalized() {
-            return Some(("normal of a contact", self.normal.to_string()));
+            return Some(("normal of a contact", shown(self.normal.to_array())));
         }
         if let Some(fault) = material_fault(self.restitution, self.friction) {
-            return Some((fault.name, fault.value.to_string()));
+            return Some((fault.name, shown([fault.value])));
         }
         let vectors = [
             ("distance of a contact", DVec3::splat(self.distance)),
@@ -173,7 +174,7 @@ impl ContactState {
             ("impulse of a contact", DVec3::new(self.sliding[0], self.sliding[1], self.impulse)),
         ];
         let (name, value) = vectors.into_iter().find(|(_, vector)| !is_small(*vector))?;
-        Some((name, value.to_string()))
+        Some((name, shown(value.to_array())))
     }
 
     fn of(contact: &ContactPoint) -> Self {

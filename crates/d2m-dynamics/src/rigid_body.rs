@@ -6,6 +6,7 @@ use crate::hollow::{bores, cavity};
 use crate::momenta::Momenta;
 use crate::numbers::{Numbers, is_small};
 use crate::quiet::Quiet;
+use crate::shown::shown;
 use crate::turning::{Pull, extreme_eigenvalues};
 use crate::velocity::Velocity;
 use crate::{MassProperties, SimulationError};
@@ -183,8 +184,8 @@ impl RigidBody {
         }
         let solid =
             body.solid.unwrap_or(if body.tree.is_watertight() { Solid::Filled } else { Solid::Surface });
-        let rest =
-            rest(center, position, orientation, time).ok_or_else(|| bad("position", position.to_string()))?;
+        let rest = rest(center, position, orientation, time)
+            .ok_or_else(|| bad("position", shown(position.to_array())))?;
         let made = Self {
             id: BodyId { place: 0, generation: 0 },
             role: if body.presence == Presence::Sensor { Role::Sensor } else { Role::Body },

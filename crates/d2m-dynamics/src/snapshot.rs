@@ -7,6 +7,7 @@ use crate::joint_rows::Joined;
 use crate::numbers::{Fault, material_fault};
 use crate::pair_state::PairState;
 use crate::rigid_body::{RigidBody, Role};
+use crate::shown::shown;
 use crate::{Simulation, SimulationError, SimulationOptions};
 use std::collections::BTreeSet;
 
@@ -206,7 +207,7 @@ impl Simulation {
             let &PairMaterial { bodies: [a, b], restitution, friction } = pair;
             if let Some(Fault { name, value, .. }) = material_fault(restitution, friction) {
                 let [a, b] = [a, b].map(|place| next.bodies[place].name.to_string());
-                return Err(SimulationError::BadPair { a, b, name, value: value.to_string() });
+                return Err(SimulationError::BadPair { a, b, name, value: shown([value]) });
             }
             next.materials.insert((a, b), Material { restitution, friction });
         }

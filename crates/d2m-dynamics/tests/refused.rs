@@ -2,7 +2,8 @@
 
 use d2m_bvh::{MeshTree, Solid, TriMesh};
 use d2m_dynamics::{
-    Body, Kind, Mass, MassError, MassProperties, Simulation, SimulationError, SimulationOptions,
+    Body, Joint, JointKind, Kind, Mass, MassError, MassProperties, Simulation, SimulationError,
+    SimulationOptions,
 };
 use d2m_motion::ConstantTwist;
 use glam::{DMat3, DQuat, DVec3};
@@ -61,6 +62,33 @@ fn an_inertia_that_no_body_has_is_refused() {
     assert!(error.to_string().starts_with("body cube: inertia"), "{error}");
     assert!(matches!(error, SimulationError::Mass { error: MassError::NoSuchBody { moments, .. }, .. }
         if moments == DVec3::new(1.0, 1.0, 3.0)));
+}
+
+/// What is wrong is named, as it is written in files and no longer than that.
+#[test]
+fn messages_name_what_was_given() {
+    let refused = |body: &Body| empty().add(body).unwrap_err().to_string();
+    for (mass, wanted) in [
+        (Mass::Density(1e308), "body cube: density 1e308: with the volume of 1.0 "),
+        (Mass::Total(1e308), "body cube: mass 1e308: with the volume of 1.0 "),
+        (Mass::Total(-1.0), "body cube: mass -1.0 must be"),
+    ] {
+        let said = refused(&cube().with_mass(mass));
+        assert!(said.starts_with(wanted), "{said}");
+    }
+    // Rows, as in a file.
+    let skew = DMat3::from_cols_array(&[1.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]).transpose();
+    let said = MassProperties::try_new(1.0, DVec3::ZERO, skew).unwrap_err().to_string();
+    assert!(said.contains("[[1.0, 0.5, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]"), "{said}");
+    let lively = refused(&cube().with_restitution(1e300));
+    assert_eq!(lively, "body cube: restitution 1e300 cannot be used");
+    let fast = refused(&cube().with_linear_velocity(DVec3::X * 1e300));
+    assert!(fast.contains("velocity [1e300, 0.0, 0.0] is too large"), "{fast}");
+    let mut simulation = empty();
+    let id = simulation.add(&cube().with_kind(Kind::Static)).unwrap();
+    let nothing = Joint::new(JointKind::Fixed, id, None, DVec3::ZERO);
+    let said = simulation.add_joint(&nothing).unwrap_err().to_string();
+    assert!(said.contains("pair without a dynamic body, or of a body with itself, cannot be used"), "{said}");
 }
 
 #[test]

@@ -97,7 +97,7 @@ impl MassProperties {
     /// (a surface inside another one, oriented the other way) are no solid.
     ///
     /// # Errors
-    /// [`MassError`]: a density that is not positive, a surface that is not closed or not consistently oriented, parts that
+    /// [`MassError`]: a density that is not positive or beyond what doubles hold of the inertia, a surface that is not closed or not consistently oriented, parts that
     /// overlap (their integral would count twice), no volume.
     pub fn try_from_density(mesh: &TriMesh, density: f64) -> Result<Self, MassError> {
         if !(density.is_finite() && density > 0.0) {
@@ -106,7 +106,7 @@ impl MassProperties {
         parts::check(mesh)?;
         let solid = integrate(mesh);
         Self::try_new(solid.mass * density, solid.center, solid.inertia * density)
-            .map_err(|_| MassError::NoVolume { value: solid.mass })
+            .map_err(|_| solid.fault("density", density))
     }
 
     /// As [`Self::try_from_density`] with the density that gives this mass.
@@ -114,8 +114,20 @@ impl MassProperties {
     /// # Errors
     /// As [`Self::try_from_density`].
     pub fn try_from_mass(mesh: &TriMesh, mass: f64) -> Result<Self, MassError> {
+        if !(mass.is_finite() && mass > 0.0) {
+            return Err(MassError::Mass { value: mass });
+        }
         let unit = Self::try_from_density(mesh, 1.0)?;
         Self::try_new(mass, unit.center, unit.inertia * (mass / unit.mass))
+            .map_err(|_| unit.fault("mass", mass))
+    }
+
+    /// Why these, of density one, are of no use with a density or a mass that is positive.
+    fn fault(&self, name: &'static str, value: f64) -> MassError {
+        match Self::try_new(self.mass, self.center, self.inertia) {
+            Ok(_) => MassError::BeyondNumbers { name, value, volume: self.mass },
+            Err(_) => MassError::NoVolume { value: self.mass },
+        }
     }
 }
 
