@@ -27,7 +27,7 @@ impl MeshTree {
     /// ```
     ///
     /// # Errors
-    /// As [`TriMesh::try_new`]; the tree is then unchanged. Surplus vertices are allowed.
+    /// As [`crate::TriMesh::try_new`]; the tree is then unchanged. Surplus vertices are allowed.
     pub fn refit(&mut self, vertices: Vec<DVec3>) -> Result<(), MeshError> {
         let mesh = self.mesh.try_move(vertices)?;
         let extent = Extent::of(&mesh);
