@@ -27,7 +27,6 @@ const fn step(name: &'static str, arguments: &'static [&'static str]) -> Step {
 /// In order of cost: what fails fast comes first. `locks` holds the lock of the Python package, which is no member of the workspace, against the
 /// manifests of the crates that it is built from. `features` stands for a check of each library. `audit` names the whole workspace, so that
 /// what others wrote has the features that it has in `tests`, and is not compiled again; of the workspace only what the test needs is.
-/// `d2m-wasm` has no doctests, and takes two minutes to compile.
 const STEPS: &[Step] = &[
     step("format", &["fmt", "--all", "--", "--check"]),
     step("locks", &["fetch", "--locked", "--manifest-path=crates/d2m-py/Cargo.toml"]),
@@ -35,7 +34,7 @@ const STEPS: &[Step] = &[
     step("features", &["check", "--locked", "--all-features", "-p=d2m"]),
     step("tests", &["test", "--workspace", "--locked", "--lib", "--bins", "--tests", "--examples"]),
     step("audit", &["test", "--workspace", "--locked", "--features=d2m/audit", "--test=audit"]),
-    step("doctests", &["test", "--workspace", "--exclude=d2m-wasm", "--locked", "--doc"]),
+    step("doctests", &["test", "--workspace", "--locked", "--doc"]),
 ];
 
 /// Libraries that have default features. Without them each must still compile, each in a call of its own: in one call cargo
