@@ -5,7 +5,7 @@ use super::switch::VARIABLE;
 use super::table::Mutant;
 use std::fs::File;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// What became of a test.
@@ -34,6 +34,7 @@ pub(super) fn run_test(
     if let Some(number) = switch {
         command.env(VARIABLE, number.to_string());
     }
+    in_a_group(&mut command);
     let mut child = command.stdout(output.try_clone()?).stderr(output).stdin(Stdio::null()).spawn()?;
     let begin = Instant::now();
     let status = loop {
@@ -41,6 +42,7 @@ pub(super) fn run_test(
             break status;
         }
         if begin.elapsed() > limit {
+            kill_group(&child);
             child.kill()?;
             child.wait()?;
             return Ok(End::Hung);
@@ -58,5 +60,20 @@ pub(super) fn run_test(
         Ok(End::Passed)
     } else {
         Err(format!("{} is not among the tests of its target", mutant.test).into())
+    }
+}
+
+/// What a test starts, as a command that hangs, ends with it.
+fn in_a_group(command: &mut Command) {
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(command, 0);
+    #[cfg(not(unix))]
+    let _ = command;
+}
+
+/// Kills what a test has started. Where that cannot be done, only the test is killed.
+fn kill_group(child: &Child) {
+    if cfg!(unix) {
+        let _ = Command::new("kill").args(["-KILL", "--", &format!("-{}", child.id())]).status();
     }
 }
