@@ -1,43 +1,14 @@
 //! Presses, jaws and rollers that leave little room, or none: what is crushed is proven to be, and all else goes on.
 
+mod ground;
+
 use d2m_bvh::{MeshTree, Solid, TriMesh};
 use d2m_dynamics::{Body, Kind, Mass, MassProperties, Simulation, SimulationOptions, StepError};
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Keyframes, Pose, RigidMotion, Span, Twist};
 use glam::{DMat3, DQuat, DVec3};
+use ground::{counted, run, slab, tree};
 use std::sync::Arc;
-
-fn tree(shape: &str) -> Arc<MeshTree> {
-    Arc::new(MeshTree::new(d2m_shapes::mesh(shape).unwrap()))
-}
-
-fn floor(scale: f64) -> Body {
-    let shape = tree(&format!("box?x={}&y={}&z={}", 10.0 * scale, scale, 10.0 * scale));
-    Body::new("floor", shape).with_kind(Kind::Static).with_position(DVec3::NEG_Y * scale)
-}
-
-/// What some steps came to.
-struct Run {
-    skipped: f64,
-    events: u32,
-}
-
-/// Steps until `end`; the skipped time.
-fn run(simulation: &mut Simulation, end: f64) -> f64 {
-    counted(simulation, end).skipped
-}
-
-fn counted(simulation: &mut Simulation, end: f64) -> Run {
-    let mut run = Run { skipped: 0.0, events: 0 };
-    while simulation.time() < end {
-        let report = simulation.step().unwrap();
-        assert!(report.events <= simulation.options().max_events + simulation.len() as u32);
-        run.events += report.events;
-        run.skipped += report.segments.iter().map(|s| s.skipped).sum::<f64>();
-    }
-    run.skipped += simulation.finish().iter().map(|s| s.skipped).sum::<f64>();
-    run
-}
 
 /// Moves by `way` within a second, and stays there.
 fn pushed(name: &str, shape: &str, from: DVec3, way: DVec3) -> Body {
@@ -53,7 +24,7 @@ fn pushed(name: &str, shape: &str, from: DVec3, way: DVec3) -> Body {
 fn a_press_crushes_only_what_has_no_room() {
     for (left, is_crushed) in [(4e-4, false), (-1e-5, true)] {
         let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
-        simulation.add(&floor(1.0).with_friction(0.3)).unwrap();
+        simulation.add(&slab(1.0).with_friction(0.3)).unwrap();
         let half = "box?x=0.3&y=0.3&z=0.3";
         let cube = simulation.add(&Body::new("cube", tree(half)).with_position(DVec3::Y * 0.301)).unwrap();
         let press = pushed("press", "box?x=1&y=0.2&z=1", DVec3::Y * 2.2, DVec3::Y * (left - 1.4));
@@ -84,7 +55,7 @@ fn a_press_crushes_only_what_has_no_room() {
 fn columns_of_equal_boxes_are_crushed() {
     for count in [2, 3] {
         let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
-        simulation.add(&floor(1.0).with_friction(0.3)).unwrap();
+        simulation.add(&slab(1.0).with_friction(0.3)).unwrap();
         let cube = tree("box?x=0.3&y=0.3&z=0.3");
         for k in 0..count {
             let place = DVec3::Y * (0.301 + 0.601 * f64::from(k));
@@ -109,7 +80,7 @@ fn columns_of_equal_boxes_are_crushed() {
 #[test]
 fn what_rounding_decides_is_not_called_crushed() {
     let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
-    simulation.add(&floor(1.0).with_friction(0.3)).unwrap();
+    simulation.add(&slab(1.0).with_friction(0.3)).unwrap();
     let half = "box?x=0.3&y=0.3&z=0.3";
     simulation.add(&Body::new("cube", tree(half)).with_position(DVec3::Y * 0.301)).unwrap();
     let press = pushed("press", "box?x=1&y=0.2&z=1", DVec3::Y * 2.2, DVec3::Y * -1.4);
@@ -199,7 +170,7 @@ fn what_turns_back_crushes_nothing() {
 fn what_could_turn_out_at_a_rim_is_not_crushed() {
     for (over, is_crushed) in [(0.0, false), (1e-6, false), (0.3, true)] {
         let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
-        simulation.add(&floor(1.0).with_friction(0.3)).unwrap();
+        simulation.add(&slab(1.0).with_friction(0.3)).unwrap();
         let stone = Body::new("stone", tree("icosphere?triangles=80&scale=0.3"));
         simulation.add(&stone.with_position(DVec3::Y * 0.3)).unwrap();
         let from = DVec3::new(1.0 - over, 1.0, 0.0);
@@ -251,7 +222,7 @@ fn spheres_in_a_row_are_not_crushed() {
 #[test]
 fn boxes_share_what_a_press_leaves() {
     let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
-    simulation.add(&floor(1.0).with_friction(0.5)).unwrap();
+    simulation.add(&slab(1.0).with_friction(0.5)).unwrap();
     let cube = tree("box?x=0.5&y=0.5&z=0.5");
     let boxes = [0.501, 1.502, 2.503].map(|height| {
         let body = Body::new(format!("at {height}"), Arc::clone(&cube)).with_position(DVec3::Y * height);
@@ -269,7 +240,7 @@ fn boxes_share_what_a_press_leaves() {
 #[test]
 fn a_heap_shares_its_room_to_the_end() {
     let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
-    simulation.add(&floor(1.0).with_friction(0.5)).unwrap();
+    simulation.add(&slab(1.0).with_friction(0.5)).unwrap();
     let cube = tree("box?x=0.2&y=0.2&z=0.2");
     for k in 0..9u8 {
         let (column, row) = (f64::from(k % 3), f64::from(k / 3));
@@ -308,7 +279,7 @@ fn wedges_lift_a_stone_that_friction_holds() {
     let triangles = faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     let stone = Arc::new(MeshTree::new(TriMesh::try_new(vertices, triangles).unwrap()));
     let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
-    simulation.add(&floor(1.0).with_friction(0.3)).unwrap();
+    simulation.add(&slab(1.0).with_friction(0.3)).unwrap();
     let stone = Body::new("stone", stone).with_position(DVec3::Y * 0.501).with_friction(0.3);
     let stone = simulation.add(&stone).unwrap();
     for (name, out) in [("right", DVec3::X), ("left", -DVec3::X), ("front", DVec3::Z), ("back", -DVec3::Z)] {
@@ -363,7 +334,7 @@ fn stones_slip_out_from_under_an_edge() {
     let mut events = 0;
     for (seed, height, friction) in [(0, 0.17, 0.4), (0, 0.17, 0.6), (1, 0.14, 0.6), (2, 0.14, 0.6)] {
         let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
-        simulation.add(&floor(1.0).with_friction(friction)).unwrap();
+        simulation.add(&slab(1.0).with_friction(friction)).unwrap();
         let motion = ConstantTwist::REST
             .with_position(DVec3::new(0.0, height + 0.1, -0.5))
             .with_linear_velocity(DVec3::Z);

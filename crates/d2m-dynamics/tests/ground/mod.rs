@@ -20,6 +20,35 @@ pub(crate) fn floor() -> Body {
     floor.with_position(DVec3::Y * -0.5)
 }
 
+/// Ten times as wide as it is thick, with its top at zero.
+pub(crate) fn slab(scale: f64) -> Body {
+    let shape = tree(&format!("box?x={}&y={}&z={}", 10.0 * scale, scale, 10.0 * scale));
+    Body::new("floor", shape).with_kind(Kind::Static).with_position(DVec3::NEG_Y * scale)
+}
+
+/// What some steps came to.
+pub(crate) struct Run {
+    pub(crate) skipped: f64,
+    pub(crate) events: u32,
+}
+
+/// Steps until `end`; the skipped time.
+pub(crate) fn run(simulation: &mut Simulation, end: f64) -> f64 {
+    counted(simulation, end).skipped
+}
+
+pub(crate) fn counted(simulation: &mut Simulation, end: f64) -> Run {
+    let mut run = Run { skipped: 0.0, events: 0 };
+    while simulation.time() < end {
+        let report = simulation.step().unwrap();
+        assert!(report.events <= simulation.options().max_events + simulation.len() as u32);
+        run.events += report.events;
+        run.skipped += report.segments.iter().map(|s| s.skipped).sum::<f64>();
+    }
+    run.skipped += simulation.finish().iter().map(|s| s.skipped).sum::<f64>();
+    run
+}
+
 pub(crate) fn at(x: f64, y: f64, z: f64) -> Pose {
     Pose::new(DVec3::new(x, y, z), DQuat::IDENTITY)
 }
