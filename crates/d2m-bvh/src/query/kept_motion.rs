@@ -159,13 +159,14 @@ impl<const NUMBERS: usize, T: Copy> Kept<NUMBERS, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{MeshTree, QueryOptions, TriMesh, Window, time_of_contact, time_of_contact_batch};
+    use crate::{ClearanceOptions, MeshTree, QueryOptions, TriMesh, Window};
+    use crate::{clearance, clearance_batch, time_of_contact, time_of_contact_batch};
     use core::sync::atomic::{AtomicUsize, Ordering};
     use d2m_motion::{Spline, SplineDegree};
     use d2m_testing::{Draw, KnuthRandom, Surface};
     use glam::DQuat;
 
-    /// Counts what it is asked.
+    /// A spline that counts how many of its poses, states and bounds are asked for.
     struct Counted {
         motion: Spline,
         asked: AtomicUsize,
@@ -244,6 +245,9 @@ mod tests {
         let met = batch.iter().flatten().filter(|answer| answer.contact().is_some()).count();
         assert!(met > 10 && met < 40, "{met}");
         assert!(3 * shared < 2 * alone, "{shared} of {alone}");
+        let options = ClearanceOptions::default();
+        let single: Vec<_> = pairs.iter().map(|&(a, b)| clearance(a, b, Window::UNIT, &options)).collect();
+        assert_eq!(clearance_batch(&pairs, Window::UNIT, &options), single);
     }
 
     /// Answers to what differs in a single bit, or in the sign of a zero, are kept apart; more of them than there are places, too.
