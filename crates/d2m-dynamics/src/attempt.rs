@@ -91,6 +91,13 @@ pub(crate) struct Found {
 }
 
 impl Attempt {
+    /// Takes a solution whose spins are not put right: corrections lead further off where impulses have bodies turn far in a flight, of the middle of
+    /// which nothing is known then, and each would make them faster.
+    fn go_back(&mut self, solved: FirstSolved) {
+        (self.found, self.system.bodies) = (solved.found, solved.bodies);
+        self.system.take_back(solved.present);
+    }
+
     /// Puts the couples that brake the bodies behind the other contacts.
     pub(crate) fn couple(&mut self, members: &[usize]) {
         self.found.contacts.truncate(self.found.targets.len());
@@ -209,17 +216,22 @@ impl Problem<'_> {
         };
         let mut attempt = Attempt { span, end, system, accuracy, found };
         let mut nearest: Option<(Found, Present)> = None;
-        let mut uncorrected = None;
+        let (mut uncorrected, mut first_solved) = (None, None::<FirstSolved>);
         for correction in 0.. {
             let Attempt { system, found, .. } = &mut attempt;
             let start = if correction == 0 { Start::Sticking } else { Start::Present };
             found.residual = system.solve(&found.pushing, accuracy, start);
             system.store(&mut found.contacts);
             let tolerance = system.tolerance(accuracy);
+            let solved = (correction == 0).then(|| (system.bodies.clone(), system.present()));
             if brakes == Brakes::OfOscillations && correction < PULLS {
                 found.pulled = pulls(&found.pulled, states, &spins, &found.contacts, span.remaining, place);
             }
-            let is_off = put_right(system, states, &found.contacts, span, place, (&found.pulled, tolerance));
+            let off = put_right(system, states, &found.contacts, span, place, &found.pulled);
+            let is_off = off > tolerance;
+            if let Some((bodies, present)) = solved.filter(|_| is_off) {
+                first_solved = Some(FirstSolved { found: found.clone(), bodies, present, off });
+            }
             let ends = Ends { joints: self.joints, states, span };
             let missed = ends.miss(system, &found.contacts, place);
             found.missed = missed.iter().map(|missed| missed.rate.abs()).fold(0.0, f64::max);
@@ -232,6 +244,13 @@ impl Problem<'_> {
                 (false, _) => JOINT_CORRECTIONS,
             };
             if correction == most || is_far_off || !is_off && found.missed <= precision {
+                let leads_off = |solved: &FirstSolved| missed.is_empty() && off > solved.off;
+                if let Some(solved) = first_solved.filter(leads_off) {
+                    attempt.go_back(solved);
+                }
+                if is_off {
+                    attempt.system.renew();
+                }
                 break;
             }
             if nearest.as_ref().is_none_or(|(nearest, _)| found.missed < nearest.missed) && !missed.is_empty()
@@ -256,15 +275,24 @@ impl Problem<'_> {
     }
 }
 
-/// The spins that belong to the angular momenta with the impulses, where the linear ones are off by more than rounding.
+/// A solution whose spins are not put right.
+struct FirstSolved {
+    found: Found,
+    bodies: Vec<SolverBody>,
+    present: Present,
+    /// By how much spins and angular momenta were off each other, as a speed.
+    off: f64,
+}
+
+/// The spins that belong to the angular momenta with the impulses, and by how much they were others, as a speed of the surface.
 fn put_right(
     system: &mut System,
     states: &[Cow<'_, RigidBody>],
     contacts: &[ContactPoint],
     span: Span,
     place: impl Fn(usize) -> usize,
-    (pulled, tolerance): (&[Option<Pull>], f64),
-) -> bool {
+    pulled: &[Option<Pull>],
+) -> f64 {
     let mut added = vec![Momenta::default(); states.len()];
     add(contacts, &mut added, place);
     let mut worst = 0.0f64;
@@ -281,5 +309,5 @@ fn put_right(
         body.velocity.angular = spin;
         body.inverse_inertia = state.inverse_inertia_under(state.turned(spin, 0.5 * span.remaining), pull);
     }
-    worst > tolerance
+    worst
 }

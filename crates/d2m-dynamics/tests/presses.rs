@@ -351,3 +351,69 @@ fn stones_slip_out_from_under_an_edge() {
     }
     assert!(events < 200, "{events}");
 }
+
+/// A prism of eight sides along z.
+fn octagonal_prism(radius: f64, half_length: f64) -> Arc<MeshTree> {
+    let corner = |k: u32| {
+        let angle = (f64::from(k % 8) - 1.5) * std::f64::consts::FRAC_PI_4;
+        DVec3::new(radius * angle.cos(), radius * angle.sin(), if k < 8 { -half_length } else { half_length })
+    };
+    let ends = (1..7).flat_map(|k| [[0, k + 1, k], [8, 8 + k, 9 + k]]);
+    let sides = (0..8).flat_map(|k| [[k, (k + 1) % 8, 8 + (k + 1) % 8], [k, 8 + (k + 1) % 8, 8 + k]]);
+    let mesh = TriMesh::try_new((0..16).map(corner).collect(), ends.chain(sides).collect()).unwrap();
+    Arc::new(MeshTree::new(mesh))
+}
+
+/// Stones without friction or weight under the edge of a press, which turn out from under it, many times in a step while they are in touch: as fast as
+/// wedges are driven out, a few thousand times as fast as the press, and not faster with each contact.
+#[test]
+fn stones_that_are_wedged_out_are_not_thrown() {
+    // Half sizes and place of the floor, sizes and place of the stone, half sizes and place of the press, with turns and tilts of these two.
+    type Placed = ([f64; 2], f64, [f64; 2], [f64; 3]);
+    let scenes: [([f64; 3], Placed, Placed, f64); 3] = [
+        (
+            [0.16, 0.28, 0.05],
+            ([0.07, 0.44], 5.53, [-0.07, 0.05], [-0.18, 0.09753219809292277, -0.15]),
+            ([0.18, 0.65], 2.09, [0.07, -0.09], [-0.13, 0.46333220744298514, -0.22]),
+            0.23,
+        ),
+        (
+            [0.41, 0.39, 0.25],
+            ([0.06, 0.46], 2.52, [0.23, 0.13], [-0.07, 0.16203320378799724, 0.18]),
+            ([0.32, 0.47], 0.55, [0.0, 0.0], [0.5, 0.5320664075759944, -0.02]),
+            0.81,
+        ),
+        (
+            [0.28, 2.06, 0.0],
+            ([0.06, 0.31], 2.27, [0.12, 0.05], [0.04, 0.0942051521862033, 0.02]),
+            ([0.62, 0.69], 1.82, [0.07, 0.01], [-0.29, 0.4503651073571693, 0.12]),
+            0.92,
+        ),
+    ];
+    let turned = |turn: f64, [x, z]: [f64; 2]| {
+        DQuat::from_rotation_y(turn) * DQuat::from_scaled_axis(DVec3::new(x, 0.0, z))
+    };
+    for ([x, z, lateral], stone, press, speed) in scenes {
+        let options = SimulationOptions::default().with_gravity(DVec3::ZERO);
+        let mut simulation = Simulation::new(options).unwrap();
+        let floor = Body::new("floor", tree(&format!("box?x={x}&y=0.5&z={z}"))).with_kind(Kind::Static);
+        let place = DVec3::new(lateral, -0.5, 0.0);
+        simulation.add(&floor.with_position(place).with_friction(0.0)).unwrap();
+        let ([radius, half_length], turn, tilt, place) = stone;
+        let body = Body::new("stone", octagonal_prism(radius, half_length)).with_friction(0.0);
+        let body = body.with_orientation(turned(turn, tilt)).with_position(DVec3::from(place));
+        let stone = simulation.add(&body).unwrap();
+        let ([x, z], turn, tilt, place) = press;
+        let motion = ConstantTwist::REST.with_position(DVec3::from(place));
+        let motion = motion.with_orientation(turned(turn, tilt)).with_linear_velocity(DVec3::NEG_Y * speed);
+        let press = Body::new("press", tree(&format!("box?x={x}&y=0.2&z={z}")));
+        let press = press.with_kind(Kind::Kinematic(Arc::new(motion)));
+        simulation.add(&press.with_friction(0.0)).unwrap();
+        while simulation.time() < 1.0 {
+            simulation.step().unwrap();
+            let speeds =
+                [simulation.linear_velocity(stone), simulation.angular_velocity(stone) * half_length];
+            assert!(speeds.iter().all(|v| v.length() < 1e4 * speed), "{}: {speeds:?}", simulation.time());
+        }
+    }
+}
