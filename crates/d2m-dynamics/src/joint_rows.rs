@@ -169,6 +169,11 @@ impl Joined {
         self.is_gone = true;
     }
 
+    /// Does a motor or a spring act at it?
+    pub(crate) fn drives(&self) -> bool {
+        !self.is_gone() && (self.joint.motor.is_some() || self.joint.spring.is_some())
+    }
+
     pub(crate) fn is_gone(&self) -> bool {
         self.is_gone
     }

@@ -37,6 +37,10 @@ impl Simulation {
             }
         }
         let is_crowd = self.len() > CROWD;
+        let mut is_driven = vec![false; self.bodies.len()];
+        for i in self.joints.iter().filter(|joined| joined.drives()).flat_map(|joined| joined.bodies) {
+            is_driven[i] = true;
+        }
         for (i, body) in self.bodies.iter_mut().enumerate() {
             if !body.is_dynamic() || body.asleep {
                 continue;
@@ -45,6 +49,8 @@ impl Simulation {
                 // What restores the gap lets it hop: what flies says so by its way.
                 (false, true) if !presses[i] => Rest::ByWay,
                 (false, _) => Rest::Unbraked,
+                // Nor does friction brake what motors and springs move, however slow they are.
+                _ if is_driven[i] => Rest::Unbraked,
                 (true, false) => Rest::BySpeed,
                 (true, true) => Rest::ByWay,
             };
@@ -88,6 +94,15 @@ impl Simulation {
             held_up[b] |= is_held;
             restless[a] |= moving(b);
             restless[b] |= moving(a);
+        }
+        // What joints connect sleeps at once.
+        for [a, b] in self.joints.iter().filter(|joined| !joined.is_gone()).map(|joined| joined.bodies) {
+            let moves = |i: usize| self.bodies[i].is_kinematic() && self.bodies[i].surface_speed() > 0.0;
+            if self.bodies[a].is_dynamic() && self.bodies[b].is_dynamic() {
+                together.push((a, b));
+            }
+            restless[a] |= moves(b);
+            restless[b] |= moves(a);
         }
         for (restless, held_up) in restless.iter_mut().zip(&held_up) {
             *restless |= !held_up;

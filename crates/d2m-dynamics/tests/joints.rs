@@ -2,8 +2,8 @@
 
 use d2m_bvh::MeshTree;
 use d2m_dynamics::{
-    Body, BodyId, Joint, JointKind, Mass, Motor, MotorTarget, Simulation, SimulationError, SimulationOptions,
-    Spring,
+    Body, BodyId, Joint, JointKind, Kind, Mass, Motor, MotorTarget, Simulation, SimulationError,
+    SimulationOptions, Spring,
 };
 use glam::{BVec3, DQuat, DVec3};
 use std::sync::Arc;
@@ -308,4 +308,59 @@ fn a_body_stays_in_its_plane() {
     let (place, turn) = (simulation.position(thrown), simulation.orientation(thrown));
     assert!((place.x - 0.5).abs() < 1e-9 && place.z.abs() < 1e-9, "{place}");
     assert!(turn.x.abs() < 1e-9 && turn.y.abs() < 1e-9 && turn.z.abs() > 0.1, "{turn}");
+}
+
+/// A motor that moves a box on the floor by a tenth of a gap in a second does so for ever, and so does a spring that is damped as much: friction does
+/// not brake them. Where the motor is at its limit the box falls asleep. All this among many bodies, too.
+#[test]
+fn what_motors_move_slowly_stays_awake() {
+    let shape = |shape: &str| Arc::new(MeshTree::new(d2m_shapes::mesh(shape).unwrap()));
+    let (cube, slab) = (shape("box?x=0.5&y=0.5&z=0.5"), shape("box?x=200&y=0.5&z=20"));
+    let motor = |speed: f64| Some(Motor::new(MotorTarget::Velocity(speed)));
+    let spring = Some(Spring::new(2e4, 1e8, 1.0));
+    for (others, motor, spring, moved) in [
+        (0, motor(1e-4), None, 3e-4),
+        (0, None, spring, 1e-4),
+        (0, motor(1.0), None, 0.0),
+        (70, motor(1e-4), None, 3e-4),
+    ] {
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        let floor = Body::new("floor", Arc::clone(&slab)).with_kind(Kind::Static).with_friction(0.5);
+        simulation.add(&floor.with_position(DVec3::Y * -0.5)).unwrap();
+        let box_at = |x: f64| Body::new("box", Arc::clone(&cube)).with_position(DVec3::new(x, 0.501, 0.0));
+        let pushed = simulation.add(&box_at(0.0)).unwrap();
+        for k in 1..=others {
+            simulation.add(&box_at(2.0 * f64::from(k))).unwrap();
+        }
+        let mut slide = Joint::new(JointKind::Prismatic, pushed, None, DVec3::ZERO);
+        (slide.motor, slide.spring) = (motor, spring);
+        let slide = slide.with_axis(DVec3::X).with_limits([-0.25, 0.25]);
+        let slide = simulation.add_joint(&slide).unwrap();
+        run(&mut simulation, 4.0);
+        let before = simulation.joint_value(slide);
+        run(&mut simulation, 7.0);
+        let way = (simulation.joint_value(slide) - before).abs();
+        assert_eq!(simulation.is_asleep(pushed), moved == 0.0);
+        assert!(if moved == 0.0 { way < 1e-9 } else { way > 0.4 * moved }, "{others}: {way}");
+    }
+}
+
+/// A bar that a motor turns above a box on the floor, on which its joint is: neither sleeps while the other one moves.
+#[test]
+fn what_joints_connect_sleeps_at_once() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let shape = |shape: &str| Arc::new(MeshTree::new(d2m_shapes::mesh(shape).unwrap()));
+    let floor = Body::new("floor", shape("box?x=20&y=0.5&z=20")).with_kind(Kind::Static).with_friction(0.5);
+    simulation.add(&floor.with_position(DVec3::Y * -0.5)).unwrap();
+    let base = Body::new("base", shape("box?x=0.5&y=0.5&z=0.5")).with_position(DVec3::Y * 0.501);
+    let base = simulation.add(&base).unwrap();
+    let arm = Body::new("arm", shape("box?x=0.3&y=0.05&z=0.05")).with_position(DVec3::new(0.3, 1.2, 0.0));
+    let arm = simulation.add(&arm).unwrap();
+    let motor = Motor::new(MotorTarget::Velocity(1.0));
+    let hinge = Joint::new(JointKind::Revolute, base, Some(arm), DVec3::Y * 1.2).with_axis(DVec3::Y);
+    simulation.add_joint(&hinge.with_motor(motor)).unwrap();
+    while simulation.time() < 3.0 {
+        simulation.step().unwrap();
+        assert!(!simulation.is_asleep(base) && !simulation.is_asleep(arm), "{}", simulation.time());
+    }
 }
