@@ -57,6 +57,12 @@ const ORDER: [u64; 256] = {
     order
 };
 
+/// Places of bytes in 16 of them: the first one of each four, and three that are zero.
+pub(super) const FIRST: [i32; 4] = {
+    let zeros = i32::from_le_bytes([0, 0x80, 0x80, 0x80]);
+    [zeros, zeros + 4, zeros + 8, zeros + 12]
+};
+
 register!([<R: Registers>] Avx<R>, f32:
     _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_set1_ps _mm256_max_ps _mm256_min_ps _mm256_xor_ps _mm256_and_ps,
     |x| _mm256_andnot_ps(_mm256_set1_ps(-0.0), x),
@@ -68,11 +74,16 @@ impl<R: Registers> Bytes for Avx<R> {
     fn byte_of(self, x: Self, y: Self, flip: Self) -> Self {
         // SAFETY: the processor has AVX2 (see the type).
         unsafe {
-            let upper = _mm256_srli_epi32::<8>(_mm256_castps_si256(self.0));
-            let two = _mm256_blendv_ps(self.0, _mm256_castsi256_ps(upper), _mm256_xor_ps(x.0, flip.0));
-            let upper = _mm256_srli_epi32::<16>(_mm256_castps_si256(two));
-            let one = _mm256_blendv_ps(two, _mm256_castsi256_ps(upper), _mm256_xor_ps(y.0, flip.0));
-            let byte = _mm256_and_si256(_mm256_castps_si256(one), _mm256_set1_epi32(255));
+            // The place of the byte, of which each sign is a bit.
+            let x = _mm256_castps_si256(x.0);
+            let y = _mm256_castps_si256(y.0);
+            let flip = _mm256_castps_si256(flip.0);
+            let first = _mm256_broadcastsi128_si256(_mm_set_epi32(FIRST[3], FIRST[2], FIRST[1], FIRST[0]));
+            let flips = _mm256_and_si256(_mm256_srai_epi32::<31>(flip), _mm256_set1_epi32(3));
+            let (of_x, of_y) = (_mm256_srli_epi32::<31>(x), _mm256_srli_epi32::<31>(y));
+            let flipped = _mm256_xor_si256(_mm256_xor_si256(first, flips), of_x);
+            let place = _mm256_xor_si256(flipped, _mm256_add_epi32(of_y, of_y));
+            let byte = _mm256_shuffle_epi8(_mm256_castps_si256(self.0), place);
             Self::wrap(_mm256_cvtepi32_ps(byte))
         }
     }

@@ -1,14 +1,14 @@
 //! What 512-bit registers add to the lanes in AVX registers.
 #![allow(unsafe_code)]
 
-use super::avx::{Avx, AvxDoubles, Registers};
+use super::avx::{Avx, AvxDoubles, FIRST, Registers};
 use super::register::register;
 use super::two::{Bytes, Elementwise, Two};
 #[allow(clippy::wildcard_imports)]
 use core::arch::x86_64::*;
 use core::ops::{Add, Mul, Sub};
 
-/// Registers of 512 bits: AVX-512 F and DQ.
+/// Registers of 512 bits: AVX-512 F, BW and DQ.
 #[derive(Clone, Copy)]
 pub(super) struct Of512;
 
@@ -17,8 +17,8 @@ impl Registers for Of512 {
     type Eight = Eight;
 }
 
-/// Sixteen `f32` in one register. Values exist only inside functions that were entered through a check for AVX-512 F
-/// and DQ.
+/// Sixteen `f32` in one register. Values exist only inside functions that were entered through a check for AVX-512 F,
+/// BW and DQ.
 #[derive(Clone, Copy)]
 pub(super) struct Sixteen(__m512);
 
@@ -79,12 +79,15 @@ impl Bytes for Sixteen {
     fn byte_of(self, x: Self, y: Self, flip: Self) -> Self {
         // SAFETY: the processor has AVX-512 (see the type).
         unsafe {
-            let x_is_negative = _mm512_movepi32_mask(_mm512_castps_si512(_mm512_xor_ps(x.0, flip.0)));
-            let y_is_negative = _mm512_movepi32_mask(_mm512_castps_si512(_mm512_xor_ps(y.0, flip.0)));
-            let four = _mm512_castps_si512(self.0);
-            let two = _mm512_mask_srli_epi32::<8>(four, x_is_negative, four);
-            let one = _mm512_mask_srli_epi32::<16>(two, y_is_negative, two);
-            Self(_mm512_cvtepi32_ps(_mm512_and_si512(one, _mm512_set1_epi32(255))))
+            // The place of the byte, of which each sign is a bit.
+            let first = _mm512_broadcast_i32x4(_mm_set_epi32(FIRST[3], FIRST[2], FIRST[1], FIRST[0]));
+            let flip = _mm512_srai_epi32::<31>(_mm512_castps_si512(flip.0));
+            let flipped = _mm512_xor_si512(first, _mm512_and_si512(flip, _mm512_set1_epi32(3)));
+            let x = _mm512_srai_epi32::<31>(_mm512_castps_si512(x.0));
+            let of_x = _mm512_xor_si512(flipped, _mm512_and_si512(x, _mm512_set1_epi32(1)));
+            let y = _mm512_srai_epi32::<31>(_mm512_castps_si512(y.0));
+            let place = _mm512_xor_si512(of_x, _mm512_and_si512(y, _mm512_set1_epi32(2)));
+            Self(_mm512_cvtepi32_ps(_mm512_shuffle_epi8(_mm512_castps_si512(self.0), place)))
         }
     }
 }

@@ -171,7 +171,8 @@ impl WideNode {
             return 0.0;
         }
         let (h, least) = (&self.half_extent, LEAST_THICKNESS * self.radius[lane]);
-        (h[0][lane].max(least) * h[1][lane].max(least) * h[2][lane].max(least)).max(LEAST_SIZE)
+        let [x, y, z] = [greater(h[0][lane], least), greater(h[1][lane], least), greater(h[2][lane], least)];
+        greater(x * y * z, LEAST_SIZE)
     }
 
     /// The same of all lanes, leaves or not.
@@ -198,6 +199,12 @@ impl WideNode {
             radius: self.radius[lane],
         }
     }
+}
+
+/// The greater one as lanes take it, in one instruction: `max` takes care of what is no number as well, which no size is.
+#[inline(always)]
+fn greater(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 /// One box, with its center relative to the origin of its wide node.

@@ -91,17 +91,23 @@ impl EdgeReach {
 pub fn reach<T: Bytes, const USED: usize>(half: &[T; 3], slabs: &[T; 3], cosines: &[T; 3], along: T) -> T {
     let mut left = [half[0] * cosines[0].abs(), half[1] * cosines[1].abs(), half[2] * cosines[2].abs()];
     let corner = left[0] + left[1] + left[2];
-    let mut steps = T::splat(0.0);
-    for pair in 0..USED {
-        let (i, j) = PAIRS[pair];
-        let common = left[i].min(left[j]);
-        (left[i], left[j]) = (left[i] - common, left[j] - common);
-        steps = steps + common * slabs[pair].byte_of(cosines[i], cosines[j], along);
+    let mut steps = cut_off(0, &mut left, slabs, cosines, along);
+    for pair in 1..USED {
+        steps = steps + cut_off(pair, &mut left, slabs, cosines, along);
     }
     corner - steps * T::splat(1.0 / STEPS)
 }
 
-/// The same for one box in twice the digits, along a direction and along the opposite one.
+/// What the cuts between the faces of a pair of axes take off, in steps, of what is left along both of them.
+#[inline(always)]
+fn cut_off<T: Bytes>(pair: usize, left: &mut [T; 3], slabs: &[T; 3], cosines: &[T; 3], along: T) -> T {
+    let (i, j) = PAIRS[pair];
+    let common = left[i].min(left[j]);
+    (left[i], left[j]) = (left[i] - common, left[j] - common);
+    common * slabs[pair].byte_of(cosines[i], cosines[j], along)
+}
+
+/// How far one box reaches, in twice the digits, along a direction and along the opposite one.
 #[inline(always)]
 pub(crate) fn reach_both_ways(half: &[f32; 3], slabs: &Slabs, cosines: [f64; 3]) -> [f64; 2] {
     let size = |k: usize| cosines[k].abs() * f64::from(half[k]);
