@@ -34,10 +34,17 @@ pub(crate) fn first_time<D: Doubles>(low: Lines<D>, high: Lines<D>, need: f64, m
     let s = Parabola::new(gap, rate, -m).first_root_bent_down().unwrap_or(enough);
     // Concave in s: the chord from a proven time to a later one with a positive value is proven too.
     let later = 2.0 * s;
-    let (l, h) = (low.at + low.rate * D::splat(later), high.at + high.rate * D::splat(later));
-    let value = h.min_element() - l.max_element() - need;
-    let s = if value - 0.5 * m * later * later > 0.0 { later } else { s };
+    let s = if is_open_at(later, low, high, need, m) { later } else { s };
     s * DOWN
+}
+
+/// Is min(high + s·rate) − max(low + s·rate) − m s²/2 above `need` at a time? Where it is so at s = 0, too, it is so until this time
+/// less its roundings (times [`DOWN`]), for it is concave.
+#[inline(always)]
+pub(crate) fn is_open_at<D: Doubles>(s: f64, low: Lines<D>, high: Lines<D>, need: f64, m: f64) -> bool {
+    let (l, h) = (low.at + low.rate * D::splat(s), high.at + high.rate * D::splat(s));
+    let value = h.min_element() - l.max_element() - need;
+    value - 0.5 * m * s * s > 0.0
 }
 
 /// A time until which every pair of vertices stays further apart than `need`, of which none beyond `enough` matters.
@@ -156,7 +163,7 @@ impl Parabola {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use d2m_lanes::F64x4;
+    use d2m_lanes::{F64x4, Quad};
 
     /// One pair of vertices, by both ways.
     fn proven([gap, rate, bend, jerk]: [f64; 4]) -> [f64; 2] {
@@ -164,6 +171,20 @@ mod tests {
             .map(|[at, rate]| Lines { at: F64x4::splat(at), rate: F64x4::splat(rate) });
         let path = PathAlong { gap, rate, bend, jerk };
         [first_time(low, high, 0.0, -bend, 1.0), first_time_of_paths(&[path], 1.0)]
+    }
+
+    /// A tip that is near and stays, beside a rim that is far and comes: a root pairs the place of the one with the rate of the other.
+    #[test]
+    fn what_is_near_and_what_closes_may_be_two_vertices() {
+        let low = Lines { at: F64x4::splat(0.0), rate: F64x4::splat(0.0) };
+        let high = Lines {
+            at: F64x4::load(&Quad([0.1, 1.1, 1.1, 1.1])),
+            rate: F64x4::load(&Quad([0.0, -3.0, -3.0, -3.0])),
+        };
+        assert!(first_time(low, high, 0.0, 3.2, 1.0) < 0.067);
+        // 0.1 = 3.2·0.25²/2 for the tip; for the rim 1.1 = 3·0.31 + 3.2·0.31²/2.
+        assert!(is_open_at(0.2499, low, high, 0.0, 3.2) && !is_open_at(0.2501, low, high, 0.0, 3.2));
+        assert!(is_open_at(0.2, low, high, 0.0, 4.9) && !is_open_at(0.35, low, high, 0.0, 0.9));
     }
 
     #[test]

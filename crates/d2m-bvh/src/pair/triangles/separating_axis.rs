@@ -5,7 +5,7 @@ use super::pair_scale::PairScale;
 use super::refined_directions::{middle_direction, refined_directions};
 use super::turning::{TurningTriangle, clear_along_turning};
 use super::turning_edges::{CrossingEdges, clear_across_edges};
-use crate::gap::first_time::{Jets, Lines, first_time, first_time_of_jets};
+use crate::gap::first_time::{Jets, Lines, first_time, first_time_of_jets, is_open_at};
 use crate::gap::widest_gap::{greatest, least, widest_gap, widest_normal};
 use crate::pair::motion::frame::Frame;
 use d2m_lanes::{Doubles, F64x4, QuadVec};
@@ -106,7 +106,7 @@ pub(crate) fn separating_axis_test<D: Doubles>(
         gap.exceeds(scale.level + scale.error),
         gap.exceeds(scale.level + FAR_STOPS * (scale.stop - scale.level)),
     );
-    let (mut best, mut touching) = (0.0, false);
+    let mut best = 0.0;
     // One piece of code for the three directions: the widest; a normal, which lasts longer than the line to a corner
     // that comes closer when faces slide along each other; near the end that of the closest features, which attains
     // the distance.
@@ -116,12 +116,15 @@ pub(crate) fn separating_axis_test<D: Doubles>(
         } else if attempt == 2 {
             let near = closest::<D>(&placed.a, placed.b);
             direction = near.direction;
-            touching = near.distance_squared <= scale.stop * scale.stop;
+            // Whatever the direction would prove.
+            if near.distance_squared <= scale.stop * scale.stop {
+                return Evaluation::Near { crossing: false, direction };
+            }
             if order == BoundOrder::Turning {
                 best = placed.clear_while_edges_turn(&near, scale, best);
             }
         }
-        best = placed.clear_for::<D>(direction, scale, scale.target(), best);
+        best = placed.clear_for::<D>(direction, scale, best);
         if order == BoundOrder::Turning && best < SHORT * enough {
             best = placed.clear_while_turning(direction, scale, best);
         }
@@ -134,18 +137,14 @@ pub(crate) fn separating_axis_test<D: Doubles>(
             return Evaluation::ClearFor(best);
         }
     }
-    if order == BoundOrder::Turning && !touching && best < VERY_SHORT * enough {
+    if order == BoundOrder::Turning && best < VERY_SHORT * enough {
         best = placed.clear_while_turning(middle_direction(&placed.a, placed.b), scale, best);
     }
-    if !touching && best == 0.0 {
+    if best == 0.0 {
         best = placed.clear_along_refined::<D>(scale);
     }
-    // One of the two ends applies up to rounding.
-    if touching || best == 0.0 {
-        Evaluation::Near { crossing: !touching, direction }
-    } else {
-        Evaluation::ClearFor(best)
-    }
+    // Further apart than that, and along no direction, they cross, up to rounding.
+    if best == 0.0 { Evaluation::Near { crossing: true, direction } } else { Evaluation::ClearFor(best) }
 }
 
 /// From a contact back in time: proofs that pairs are apart before it.
@@ -168,16 +167,27 @@ pub(crate) fn apart_since<D: Doubles>(
     span: f64,
 ) -> bool {
     let placed = Placed::new::<D>(&contact.reversed, triangles, scale, span, BoundOrder::Second);
-    let mut direction = contact.direction;
-    for attempt in 0..2 {
-        if attempt == 1 {
-            direction = widest_gap::<D>(&placed.a, placed.b).direction;
-        }
-        if placed.clear_for::<D>(direction, scale, scale.level, 0.0) >= span {
-            return true;
-        }
+    placed.is_clear_along::<D>(contact.direction, scale)
+        || placed.is_clear_along::<D>(widest_gap::<D>(&placed.a, placed.b).direction, scale)
+}
+
+/// Positions and rates of the vertices of two triangles that are apart along a direction.
+struct Along<D> {
+    of_a: Lines<D>,
+    of_b: Lines<D>,
+    low: Low,
+    /// The direction, made longer when it is very short, its length, and the gap along it that counts as none.
+    n: DVec3,
+    length: f64,
+    need: f64,
+}
+
+impl<D: Doubles> Along<D> {
+    /// Those of the lower triangle and those of the other one.
+    #[inline(always)]
+    fn in_order(&self) -> [Lines<D>; 2] {
+        if self.low == Low::A { [self.of_a, self.of_b] } else { [self.of_b, self.of_a] }
     }
-    false
 }
 
 impl<'p> Placed<'p> {
@@ -205,35 +215,64 @@ impl<'p> Placed<'p> {
         [self.frame.rotation.transform(of_a), of_b]
     }
 
-    /// The larger of `known` and the time for which the direction keeps the pair further apart than `level`.
+    /// The triangles along a direction, if they are further apart than `level` along it.
     #[inline(always)]
-    fn clear_for<D: Doubles>(&self, n: DVec3, scale: &PairScale, level: f64, known: f64) -> f64 {
-        let n = lengthened(n);
+    fn along<D: Doubles>(&self, n: DVec3, scale: &PairScale, level: f64) -> Option<Along<D>> {
+        let mut n = n;
+        let mut length = n.length();
+        // Its largest coordinate is above the shortest, too, and it stays as it is.
+        let is_long = length > 2.0 * SHORTEST;
+        if !is_long {
+            n = lengthened(n);
+            length = n.length();
+        }
         let a = QuadVec::<D>::new([self.a[0], self.a[1], self.a[2], self.a[2]]);
         let b = QuadVec::<D>::new([self.b[0], self.b[1], self.b[2], self.b[2]]);
         let (pa, pb) = (a.dot(n), b.dot(n));
         let (forward, backward) = (pb.min_element() - pa.max_element(), pa.min_element() - pb.max_element());
         let a_is_low = forward > backward;
         let gap = if a_is_low { forward } else { backward };
-        let length = n.length();
         let need = (level + scale.error) * length;
         // Not when n is zero or not a number either, nor so short that its square is lost to underflow.
         let separated = gap > need && length > SHORTEST;
         if !separated {
-            return known;
+            return None;
         }
         let [omega_a, omega_b] = self.omegas();
         let (turn_a, turn_b) = (n.cross(omega_a), n.cross(omega_b));
         let drift = n.dot(self.frame.velocity.to_vec()) - turn_a.dot(self.frame.apart.to_vec());
         let (ra, rb) = (a.dot(turn_a) + D::splat(drift), b.dot(turn_b));
+        Some(Along {
+            of_a: Lines { at: pa, rate: ra },
+            of_b: Lines { at: pb, rate: rb },
+            low: if a_is_low { Low::A } else { Low::B },
+            n,
+            length,
+            need,
+        })
+    }
+
+    /// Whether the direction keeps the pair further apart than the level for all the time that matters: now and at the end, for the bound
+    /// on the gap is concave. No root is needed.
+    #[inline(always)]
+    fn is_clear_along<D: Doubles>(&self, n: DVec3, scale: &PairScale) -> bool {
+        let Some(along) = self.along::<D>(n, scale, scale.level) else { return false };
+        let [low, high] = along.in_order();
+        is_open_at(self.enough * UP, low, high, along.need, scale.acceleration * along.length)
+    }
+
+    /// The larger of `known` and the time for which the direction keeps the pair further apart than the level that pairs are advanced to.
+    #[inline(always)]
+    fn clear_for<D: Doubles>(&self, n: DVec3, scale: &PairScale, known: f64) -> f64 {
+        let Some(along) = self.along::<D>(n, scale, scale.target()) else { return known };
         let s = if self.order == BoundOrder::Second {
-            let (of_a, of_b) = (Lines { at: pa, rate: ra }, Lines { at: pb, rate: rb });
-            let (low, high) = if a_is_low { (of_a, of_b) } else { (of_b, of_a) };
-            first_time(low, high, need, scale.acceleration * length, self.enough)
+            let [low, high] = along.in_order();
+            first_time(low, high, along.need, scale.acceleration * along.length, self.enough)
         } else {
-            let of_a = Lines { at: three(pa), rate: three(ra) };
-            let of_b = Lines { at: three(pb), rate: three(rb) };
-            self.clear_for_jets(n, scale, need, if a_is_low { Low::A } else { Low::B }, [of_a, of_b])
+            // Written out: a closure is not inlined into code for other instruction sets.
+            let of_a = Lines { at: three(along.of_a.at), rate: three(along.of_a.rate) };
+            let of_b = Lines { at: three(along.of_b.at), rate: three(along.of_b.rate) };
+            self.clear_for_jets(along.n, scale, along.need, along.low, [of_a, of_b])
         };
         if s > known { s } else { known }
     }
@@ -245,7 +284,7 @@ impl<'p> Placed<'p> {
     fn clear_along_refined<D: Doubles>(&self, scale: &PairScale) -> f64 {
         let mut best = 0.0;
         for direction in refined_directions(&self.a, self.b) {
-            best = self.clear_for::<D>(direction, scale, scale.target(), best);
+            best = self.clear_for::<D>(direction, scale, best);
         }
         best
     }
@@ -364,7 +403,8 @@ impl<'p> Placed<'p> {
 }
 
 /// The direction, made longer when it is very short; zero stays zero.
-#[inline(always)]
+#[cold]
+#[inline(never)]
 fn lengthened(n: DVec3) -> DVec3 {
     let size = n.abs().max_element();
     if size > SHORTEST || size == 0.0 { n } else { n / size }
