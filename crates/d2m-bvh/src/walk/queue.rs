@@ -195,9 +195,15 @@ impl Queue {
     /// Adds items whose keys are not below the last key handed out.
     #[inline(always)]
     pub(crate) fn extend(&mut self, items: impl IntoIterator<Item = Item>) {
+        // Kept in registers: in memory each item would wait for the one before.
+        let (last, mut occupied) = (self.last, self.occupied);
         for item in items {
-            self.push(item);
+            debug_assert!(item.key >= last);
+            let bucket = 32 - (item.key ^ last).leading_zeros();
+            self.buckets[bucket as usize].push(item);
+            occupied |= 1 << bucket;
         }
+        self.occupied = occupied;
     }
 
     /// Drops the items for which `keep` is false.

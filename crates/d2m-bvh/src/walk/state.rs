@@ -197,6 +197,7 @@ impl<'s> Search<'s> {
         self.ahead.is_some_and(|ahead| self.is_sweep_due() || ahead.is_useless())
     }
 
+    #[inline(always)]
     pub(crate) fn out_of_budget(&self) -> bool {
         self.work() >= self.limits.most_tests || self.limits.stop.is_due()
     }

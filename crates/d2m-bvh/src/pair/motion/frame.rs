@@ -54,6 +54,7 @@ struct Turned {
 impl BodyRotation {
     /// For p = p₀ + s·u + (1 − c)·w, u = k × p₀, w = k × u: [ω]p = |ω|(c·u + s·w), [ω]²p = |ω|²(c·w − s·u), and
     /// [ω]³ = −|ω|²[ω].
+    #[inline(always)]
     fn new(motion: &LocalMotion, start: f64) -> Self {
         let (turning, omega, arm) = (motion.turning(), motion.angular_velocity(), motion.arm());
         let [x, y, z] = turning.start();
