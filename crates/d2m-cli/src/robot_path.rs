@@ -3,6 +3,7 @@
 use crate::failure::{Failure, parse_json};
 use crate::load::read;
 use crate::simulation::short;
+use d2m::motion::serde_object::Object;
 use d2m_robot::Trajectory;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -11,7 +12,7 @@ use std::path::Path;
 pub(crate) fn read_path(file: &Path) -> Result<Trajectory, Failure> {
     let place = file.display().to_string();
     let bytes = read(file)?;
-    let path: Trajectory = parse_json(&place, &bytes).map_err(|failure| {
+    let Object(path) = parse_json::<Object<Trajectory>>(&place, &bytes).map_err(|failure| {
         number_fault(&String::from_utf8_lossy(&bytes)).map_or(failure, |reason| Failure::at(&place, reason))
     })?;
     path.joint_values().map_err(|error| Failure::at(&place, error))?;

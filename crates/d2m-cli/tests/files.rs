@@ -185,3 +185,56 @@ fn exported_meshes_load_again() {
     let text = stdout(&d2m(&["info", &scene]));
     assert!(text.contains("triangles   24") && text.contains("parts       2"), "{text}");
 }
+
+/// Cases of features, runs and paths of robots: a list is no object with its values in order.
+#[test]
+fn keys_of_other_files_are_read_from_objects_too() {
+    let folder = Folder::new("lists");
+    let place = |x: f64, v: f64| {
+        format!(r#"{{"x": [{x}, 0, 0], "q": [1, 0, 0, 0], "v": [{v}, 0, 0], "w": [0, 0, 0]}}"#)
+    };
+    let case = |b: &str| {
+        let [rest, comes] = [place(0.0, 0.0), place(-3.0, 4.0)];
+        format!(
+            r#"{{"id": "k", "kind": "sphere_sphere", "A": {{"c": [0, 0, 0], "r": 1}}, "B": {b}, "motionA": {rest}, "motionB": {comes}, "t0": 0, "t1": 1}}"#
+        )
+    };
+    let good = folder.file("good.jsonl", &case(r#"{"c": [0, 0, 0], "r": 1}"#));
+    let out = folder.path("answers.jsonl");
+    assert!(d2m(&["features", &good, "--out", &out]).status.success());
+    let bad = folder.file("bad.jsonl", &case("[[0, 0, 0], 1]"));
+    refused(&["features", &bad, "--out", &out], &["bad.jsonl, line 1", "an object with keys"]);
+
+    folder.file("scene.json", r#"{"bodies": [{"name": "b", "mesh": "shape:box"}]}"#);
+    let header = r#"{"scene": "scene.json", "bodies": [{"name": "b", "center": [0, 0, 0]}]}"#;
+    let segment = format!(r#"{{"t0": 0, "t1": 1, "bodies": [{}]}}"#, place(0.0, 1.0));
+    let page = folder.path("page.html");
+    let view = |lines: [&str; 2], line: Option<u32>| {
+        let run = folder.file("run.jsonl", &format!("{}\n{}\n", lines[0], lines[1]));
+        let asked = ["view", &run, "--out", &page];
+        match line {
+            Some(line) => refused(&asked, &[&format!("run.jsonl, line {line}"), "an object with keys"]),
+            None => assert!(d2m(&asked).status.success()),
+        }
+    };
+    view([header, &segment], None);
+    view([r#"["scene.json", [{"name": "b", "center": [0, 0, 0]}]]"#, &segment], Some(1));
+    view([r#"{"scene": "scene.json", "bodies": [["b", [0, 0, 0]]]}"#, &segment], Some(1));
+    let state = "[[0, 0, 0], [1, 0, 0, 0], [0, 0, 0], [0, 0, 0]]";
+    view([header, &format!("[0, 1, [{}]]", place(0.0, 1.0))], Some(2));
+    view([header, &format!(r#"{{"t0": 0, "t1": 1, "bodies": [{state}]}}"#)], Some(2));
+    view([header, &format!(r#"{{"t0": 0, "t1": 1, "changed": [[0, {state}]]}}"#)], Some(2));
+    let impulse = r#""contacts": [[[0, 0, 0], [0, 1, 0], [0, 1, 0]]]"#;
+    view([header, &format!("{}, {impulse}}}", &segment[..segment.len() - 1])], Some(2));
+
+    let robot = r#"<robot name="r"><link name="w"/><link name="m"/><joint name="j" type="continuous"><parent link="w"/><child link="m"/></joint></robot>"#;
+    let robot = folder.file("r.urdf", robot);
+    let point = r#"{"positions": [0], "time_from_start": 0}"#;
+    for path in [
+        format!(r#"{{"joint_names": ["j"], "points": [{point}, [[1], [], [], [], 1]]}}"#),
+        format!(r#"[["j"], [{point}, {point}]]"#),
+    ] {
+        let path = folder.file("path.json", &path);
+        refused(&["robot", &robot, "--path", &path], &["path.json", "an object with keys"]);
+    }
+}

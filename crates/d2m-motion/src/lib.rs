@@ -68,7 +68,8 @@ mod serde_any;
 #[cfg(feature = "serde")]
 mod serde_form;
 #[cfg(feature = "serde")]
-mod serde_object;
+#[doc(hidden)]
+pub mod serde_object;
 mod sin_cos;
 mod span_motion;
 mod spline;

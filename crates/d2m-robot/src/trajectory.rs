@@ -43,6 +43,7 @@ pub struct Trajectory {
     /// The joints that the numbers of each point belong to.
     pub joint_names: Vec<String>,
     /// Two or more.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "d2m_motion::serde_object::all"))]
     pub points: Vec<TrajectoryPoint>,
     /// None: cubic where velocities are given, else straight.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]

@@ -8,6 +8,7 @@ use crate::output::Output;
 use crate::report::microseconds;
 use d2m::feature::{self, ContactOptions, FirstContact, PairMotion, StraightPaths};
 use d2m::motion::ConstantTwist;
+use d2m::motion::serde_object::one;
 use d2m::root::Evidence;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -25,25 +26,25 @@ struct Case {
 #[serde(tag = "kind", rename_all = "snake_case")]
 enum Question {
     PointTriangle {
-        #[serde(rename = "A")]
+        #[serde(rename = "A", deserialize_with = "one")]
         a: Point,
-        #[serde(rename = "B")]
+        #[serde(rename = "B", deserialize_with = "one")]
         b: Triangle,
         #[serde(flatten)]
         moving: Moving,
     },
     EdgeEdge {
-        #[serde(rename = "A")]
+        #[serde(rename = "A", deserialize_with = "one")]
         a: Edge,
-        #[serde(rename = "B")]
+        #[serde(rename = "B", deserialize_with = "one")]
         b: Edge,
         #[serde(flatten)]
         moving: Moving,
     },
     SphereSphere {
-        #[serde(rename = "A")]
+        #[serde(rename = "A", deserialize_with = "one")]
         a: Sphere,
-        #[serde(rename = "B")]
+        #[serde(rename = "B", deserialize_with = "one")]
         b: Sphere,
         #[serde(flatten)]
         moving: Moving,

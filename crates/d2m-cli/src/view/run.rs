@@ -7,6 +7,7 @@ use crate::mesh_library::MeshLibrary;
 use crate::output::short;
 use d2m::bvh::TriMesh;
 use d2m::motion::ConstantTwist;
+use d2m::motion::serde_object::{Object, all};
 use glam::{DQuat, DVec3};
 use serde::Deserialize;
 use serde_json::Value;
@@ -25,6 +26,7 @@ const MOST_BYTES: u64 = 4 << 30;
 #[derive(Deserialize)]
 struct Header {
     scene: String,
+    #[serde(deserialize_with = "all")]
     bodies: Vec<HeaderBody>,
 }
 
@@ -40,11 +42,11 @@ struct HeaderBody {
 struct Segment {
     t0: f64,
     t1: f64,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "all")]
     bodies: Vec<State>,
     #[serde(default)]
-    changed: Vec<(usize, State)>,
-    #[serde(default)]
+    changed: Vec<(usize, Object<State>)>,
+    #[serde(default, deserialize_with = "all")]
     contacts: Vec<Impulse>,
     #[serde(default)]
     skipped: f64,
@@ -80,6 +82,7 @@ struct BodyMesh {
 
 #[derive(Deserialize)]
 struct SceneFile {
+    #[serde(deserialize_with = "all")]
     bodies: Vec<BodyMesh>,
     #[serde(default)]
     simulation: SimulationFile,
@@ -166,7 +169,7 @@ impl Run {
         let place = |line: usize| format!("{}, line {}", path.display(), line + 1);
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
         let (line, first) = lines.next().unwrap_or_default();
-        let header: Header = serde_json::from_str(first)
+        let Object(header) = serde_json::from_str::<Object<Header>>(first)
             .map_err(|error| Failure::at(place(line), json_fault(&error, first)))?;
         let flights = header.bodies.iter().map(|_| Vec::new()).collect();
         let window = [f64::NAN; 2];
@@ -174,8 +177,8 @@ impl Run {
         let mut is_first = true;
         for (line, text) in lines {
             let fault = |reason: String| Failure::at(place(line), reason);
-            let segment: Segment =
-                serde_json::from_str(text).map_err(|error| fault(json_fault(&error, text)))?;
+            let Object(segment) = serde_json::from_str::<Object<Segment>>(text)
+                .map_err(|error| fault(json_fault(&error, text)))?;
             if is_first {
                 run.window[0] = segment.t0;
                 is_first = false;
@@ -201,7 +204,8 @@ impl Run {
         self.skipped += segment.skipped;
         self.is_thinned |= segment.thinned;
         let all = segment.bodies.into_iter().enumerate();
-        for (index, state) in all.chain(segment.changed) {
+        let changed = segment.changed.into_iter().map(|(index, Object(state))| (index, state));
+        for (index, state) in all.chain(changed) {
             let (Some(body), Some(flights)) = (self.header.bodies.get(index), self.flights.get_mut(index))
             else {
                 let count = self.header.bodies.len();
