@@ -393,7 +393,7 @@ pub(crate) fn rest(center: DVec3, position: DVec3, orientation: DQuat, time: f64
 /// Of a mesh without mass: the center of its volume if it is closed, of its bounding box otherwise.
 fn middle(tree: &MeshTree) -> DVec3 {
     if tree.is_watertight() {
-        let solid = crate::mass::integrate(tree.mesh());
+        let solid = MassProperties::of_enclosed(tree.mesh());
         if solid.center.is_finite() && (solid.center - tree.center()).length() <= 2.0 * tree.radius() {
             return solid.center;
         }

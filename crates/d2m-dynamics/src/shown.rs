@@ -1,6 +1,6 @@
 //! Numbers in messages.
 
-use glam::{DMat3, DQuat};
+use glam::DQuat;
 
 /// Numbers as messages show them, several in brackets: in powers of ten where zeros would fill the line.
 pub(crate) fn shown<const N: usize>(numbers: [f64; N]) -> String {
@@ -15,22 +15,14 @@ pub(crate) fn shown_turn(q: DQuat) -> String {
     shown([q.w, q.x, q.y, q.z])
 }
 
-/// The rows of a matrix, as files have them.
-pub(crate) fn rows(matrix: &DMat3) -> [[f64; 3]; 3] {
-    matrix.transpose().to_cols_array_2d()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
 
     #[test]
     fn large_numbers_are_short() {
         assert_eq!(shown([1e300]), "1e300");
         assert_eq!(shown([0.25, -1e-300, f64::NAN]), "[0.25, -1e-300, NaN]");
         assert_eq!(shown_turn(DQuat::from_xyzw(1.0, 2.0, 3.0, 1e200)), "[1e200, 1.0, 2.0, 3.0]");
-        let m = DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::new(7.0, 0.0, 1.0));
-        assert_eq!(rows(&m), [[1.0, 0.0, 7.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
     }
 }

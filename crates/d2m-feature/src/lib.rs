@@ -12,6 +12,9 @@
 //! ## Spheres about bodies
 //! - [`MovingSphere`]: whether and how long two of them stay apart ([`FirstMeeting`]), for a square root or two.
 //!
+//! ## Triangles
+//! - [`stay_within`]: do two of them ([`MovingTriangle`]) stay near each other for a while?
+//!
 //! ## Options and answers
 //! - [`ContactOptions`]: tolerance, minimum separation, limits.
 //! - [`FirstContact`]: separated, a [`ContactBracket`], or undecided. [`ContactDetails`]: where and how, in
@@ -46,6 +49,7 @@ mod rigid_query;
 mod rounding;
 mod sphere;
 mod sphere_sphere;
+mod staying;
 mod straight_path;
 mod triangle_distance;
 mod triangle_intersection;
@@ -61,6 +65,7 @@ pub use options::ContactOptions;
 pub use pair_motion::{PairMotion, PlacedTriangle};
 pub use proven_crossing::proven_crossing;
 pub use sphere::Sphere;
+pub use staying::{MovingTriangle, stay_within};
 pub use straight_path::StraightPaths;
 pub use triangle_distance::{TriangleDistance, TriangleFeature, triangle_distance};
 pub use triangle_intersection::triangles_intersect;

@@ -9,6 +9,7 @@
 //! - [`TriMesh`], from and to [`MeshArrays`]; [`MAX_COORDINATE`] bounds its numbers. [`Topology`] (with its
 //!   [`Edge`]s) and [`Validation`] say what kind of mesh it is, [`MeshParts`] and [`MeshPart`] which parts
 //!   hold each other.
+//! - [`MassProperties`] of a closed mesh: mass, center of mass and inertia ([`MassError`]).
 //! - [`MeshTree`]: the tree of boxes. [`EnclosingSphere`]: the smallest sphere about points.
 //!
 //! ## Two bodies at rest
@@ -43,6 +44,7 @@ mod cancel;
 mod enclosing_sphere;
 mod error;
 pub mod margin;
+mod mass;
 mod mesh;
 mod meter;
 mod nearest_point;
@@ -59,6 +61,7 @@ pub use cancel::{CancelFlag, Canceller};
 pub use d2m_lanes::InstructionSet;
 pub use enclosing_sphere::EnclosingSphere;
 pub use error::QueryError;
+pub use mass::{MassError, MassProperties};
 pub use mesh::{Edge, MAX_COORDINATE, MeshArrays, MeshError, Topology, TriMesh, Validation};
 pub use meter::{Exhausted, Meter, Stop};
 pub use nearest_point::Simplex;

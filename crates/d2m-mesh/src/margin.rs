@@ -4,7 +4,8 @@
 
 /// v = 2⁻⁵³.
 pub use d2m_lanes::UNIT as UNIT_F64;
-use glam::DVec3;
+#[doc(no_inline)]
+pub use d2m_motion::length;
 
 /// u = 2⁻²⁴.
 pub const UNIT_F32: f64 = 1.0 / 16_777_216.0;
@@ -35,19 +36,9 @@ pub fn error_of(factor: f32, size: f32) -> f32 {
     (factor * (1.0 / ROOM_BELOW_OVERFLOW)) * (size * ROOM_BELOW_OVERFLOW)
 }
 
-/// |v| within 8·2⁻⁵³ of itself, and less than the smallest normal number beside that, in any unit: squares of components that are divided
-/// by the largest one are not lost to underflow, nor do they overflow. Zero only for zero.
-#[inline]
-pub fn length(v: DVec3) -> f64 {
-    let largest = v.abs().max_element();
-    // What is zero, infinite or no number is its own length.
-    let is_divisor = largest > 0.0 && largest < f64::INFINITY;
-    if is_divisor { largest * (v / largest).length() } else { largest }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{DVec3, ROOM_BELOW_OVERFLOW, UNIT_F32, error_of, length};
+    use super::{ROOM_BELOW_OVERFLOW, UNIT_F32, error_of};
 
     #[test]
     fn errors_are_infinite_where_sums_of_sizes_may_overflow() {
@@ -62,17 +53,5 @@ mod tests {
         }
         assert!((f32::MAX / ROOM_BELOW_OVERFLOW * (3.0 * 126.0)).is_finite());
         assert!(error_of(factor, f32::NAN).is_nan());
-    }
-
-    #[test]
-    fn lengths_keep_their_digits_in_any_unit() {
-        for exponent in -1010..1020 {
-            let unit = 2f64.powi(exponent);
-            let v = DVec3::new(2.0, -3.0, 6.0) * unit;
-            assert!((length(v) / unit - 7.0).abs() < 1e-14, "{exponent}");
-        }
-        assert_eq!(length(DVec3::ZERO), 0.0);
-        assert_eq!(length(DVec3::INFINITY), f64::INFINITY);
-        assert!(length(DVec3::new(1.0, f64::NAN, 2.0)).is_nan());
     }
 }

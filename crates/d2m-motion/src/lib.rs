@@ -20,7 +20,8 @@
 //!   angle or length over time.
 //!
 //! ## Motions made of motions
-//! [`Composed`]: a motion inside a moving frame. [`Retimed`]: the same way at another pace.
+//! [`Composed`]: a motion inside a moving frame. [`Retimed`]: the same way at another pace. [`KeptMotion`]: one that many queries
+//! ask the same.
 //!
 //! ## Poses and velocities
 //! - [`Pose`], [`Twist`], [`BodyTwist`]: plain numbers.
@@ -29,7 +30,7 @@
 //! ## For a motion of your own
 //! [`Kinematics`], [`CertifiedState`] and [`Ball`] make enclosures tight, [`StateTwist`] is a motion through
 //! the middle of a state, and [`TwistPiece`] says where a motion is a constant twist for a while.
-//! [`CoveredMotion`] holds a motion to the times that it covers.
+//! [`CoveredMotion`] holds a motion to the times that it covers. [`length`] is that of a vector in any unit.
 //!
 //! ## Errors
 //! [`MotionError`]: a description that was refused. [`OutsideDomain`]: times that a motion does not cover.
@@ -52,8 +53,10 @@ mod error;
 mod joint;
 mod joint_points;
 mod joint_value;
+mod kept_motion;
 mod keyframes;
 mod kinematics;
+mod length;
 mod path_jet;
 mod pose;
 mod relative;
@@ -92,8 +95,10 @@ pub use error::MotionError;
 pub use joint::{Joint, JointKind};
 pub use joint_points::JointPoints;
 pub use joint_value::JointValue;
+pub use kept_motion::KeptMotion;
 pub use keyframes::{KeyframeSpan, Keyframes, LARGEST_GAP, Span};
 pub use kinematics::Kinematics;
+pub use length::length;
 pub use pose::{IntervalPose, Pose};
 pub use retimed::Retimed;
 pub use rigid_motion::{RigidMotion, TwistPiece};

@@ -14,8 +14,6 @@ mod meshes;
 mod report;
 mod rounded;
 mod spans;
-mod staying;
-mod staying_curved;
 mod staying_inside;
 mod staying_walk;
 mod time_of_contact;

@@ -5,12 +5,11 @@
 //! On each triangle a point wanders whose weights are quadratic in time: their difference is a polynomial of the fourth degree, and no
 //! longer than the longest of its Bernstein coefficients. docs/theory/questions.md, "Staying in contact".
 
-use crate::Moving;
-use d2m_feature::{TriangleDistance, closest_weights, triangle_distance};
+use super::MovingTriangle;
+use crate::{TriangleDistance, closest_weights, triangle_distance};
 use d2m_interval::Interval;
 use d2m_lanes::{UP, power_of_two, power_of_two_below};
-use d2m_mesh::margin::length;
-use d2m_motion::{Ball, CertifiedState, Kinematics, RelativeState};
+use d2m_motion::{Ball, CertifiedState, Kinematics, RelativeState, length};
 use glam::DVec3;
 
 /// A control point takes fewer than 28 operations in a row, on terms of two bodies whose weights, in magnitudes, sum up to 1, 1 and 2: with √3 for
@@ -64,19 +63,19 @@ fn in_time(state: &CertifiedState, over: &Kinematics, unit: f64) -> (CertifiedSt
 
 impl CurvedPair {
     /// The span has a length, and no joint of the motions inside of it. Where the motions' enclosures know nothing the error is infinite.
-    pub(super) fn new(bodies: &[Moving<'_>; 2], triangles: [u32; 2], from: f64, to: f64) -> Self {
+    pub(super) fn new(triangles: &[MovingTriangle<'_>; 2], from: f64, to: f64) -> Self {
         let middle = (from + 0.5 * (to - from)).clamp(from, to);
         let half = (to - middle).max(middle - from) * UP;
         // A power of two, so that a half is from one to two of these.
         let unit = power_of_two_below(half);
         let h = half / unit;
-        let origin = bodies[1].motion.pose_and_twist(middle).0.translation;
+        let origin = triangles[1].motion.pose_and_twist(middle).0.translation;
         let span = Interval::new(from, to);
-        let [(a, over_a), (b, over_b)] = bodies.map(|body| {
-            let state = body.motion.enclose_state_about(middle, origin);
-            in_time(&state, &body.motion.enclose_kinematics(span), unit)
+        let [(a, over_a), (b, over_b)] = triangles.map(|triangle| {
+            let state = triangle.motion.enclose_state_about(middle, origin);
+            in_time(&state, &triangle.motion.enclose_kinematics(span), unit)
         });
-        let given = [0, 1].map(|k| bodies[k].body.mesh().corners(triangles[k] as usize));
+        let given = [0, 1].map(|k| triangles[k].corners);
         let arms = [given[0].map(|p| p - a.at), given[1].map(|p| p - b.at)];
         let [radius, extent] = arms.map(|arms| arms.map(length).into_iter().fold(0.0, f64::max) * UP);
         // Places of B are from its reference point here.
@@ -191,7 +190,6 @@ fn quadratics([begin, middle, end]: &[[f64; 3]; 3]) -> [Quadratic<f64>; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use d2m_mesh::{MeshTree, TriMesh};
     use d2m_motion::{Chain, Composed, ConstantTwist, Joint, JointKind, JointValue, RigidMotion};
     use d2m_testing::{Draw, KnuthRandom};
 
@@ -256,8 +254,7 @@ mod tests {
     #[test]
     fn corners_follow_their_parabolas_up_to_the_error() {
         let mut random = KnuthRandom(615);
-        let tree =
-            MeshTree::new(TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap());
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let mut bends = 0;
         for round in 0..300 {
             let second = [1.0, 1e-120, 1e120, 1e-12][round % 4];
@@ -281,20 +278,20 @@ mod tests {
             let slides = Chain::try_new(vec![joint.unwrap()]).unwrap();
             let a = Composed::new(outer, Composed::new(slides, inner));
             let b = Composed::new(outer, other);
-            let bodies = [Moving::new(&tree, &a), Moving::new(&tree, &b)];
-            let (from, length) = (0.3 * second, [0.01, 0.1][round % 2] * second);
-            let to = from + length;
-            let pair = CurvedPair::new(&bodies, [0; 2], from, to);
+            let triangles = [MovingTriangle { corners, motion: &a }, MovingTriangle { corners, motion: &b }];
+            let (from, long) = (0.3 * second, [0.01, 0.1][round % 2] * second);
+            let to = from + long;
+            let pair = CurvedPair::new(&triangles, from, to);
             // Of the third order in the length.
-            let half = 0.5 * length / second;
+            let half = 0.5 * long / second;
             assert!(pair.error < 1000.0 * half * half * half, "round {round}: {}", pair.error);
             let mut most: f64 = 0.0;
             for k in 0..=16 {
-                let time = from + length * (f64::from(k) / 16.0);
+                let time = from + long * (f64::from(k) / 16.0);
                 let poses = [a.pose_and_twist(time).0, b.pose_and_twist(time).0];
                 let x = (f64::from(k) / 8.0 - 1.0).clamp(-1.0, 1.0);
                 let turned = poses[1].rotation.inverse();
-                for (corner, curve) in tree.mesh().corners(0).into_iter().zip(&pair.corners[0]) {
+                for (corner, curve) in corners.into_iter().zip(&pair.corners[0]) {
                     let place =
                         turned * (poses[0].transform_point(corner) - poses[1].transform_point(DVec3::ZERO));
                     most = most.max((place - at(curve, x)).length());

@@ -1,21 +1,25 @@
 //! Mass, center of mass and inertia of a solid.
 
 mod compensated;
-mod parts;
+mod error;
 
-use crate::MassError;
+use crate::mesh::Closedness;
+use crate::{MeshPart, MeshParts, Topology, TriMesh};
 use compensated::Sum;
-use d2m_bvh::TriMesh;
+pub use error::MassError;
 use glam::{DMat3, DVec3};
 
 /// Mass, center of mass and inertia of a body, in the axes of its mesh.
 ///
 /// ```
-/// use d2m_dynamics::MassProperties;
-/// let mesh = d2m_shapes::mesh("box?x=0.5&y=1&z=1.5")?;
-/// let brick = MassProperties::try_from_density(&mesh, 2.0)?;
-/// assert!((brick.mass - 12.0).abs() < 1e-12); // 1 × 2 × 3 at density 2
-/// assert!((brick.inertia.x_axis.x - 13.0).abs() < 1e-12); // m (2² + 3²) / 12
+/// use d2m_mesh::{MassProperties, TriMesh};
+/// use glam::DVec3;
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let tetrahedron = MassProperties::try_from_density(&mesh, 6.0)?;
+/// assert!((tetrahedron.mass - 1.0).abs() < 1e-15); // a sixth of a unit cube at density 6
+/// assert!((tetrahedron.center - DVec3::splat(0.25)).length() < 1e-15);
+/// assert!((tetrahedron.inertia.x_axis.x - 3.0 / 40.0).abs() < 1e-15); // m (1 + 1) 3 / 80
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,13 +40,13 @@ impl MassProperties {
     /// Those of bodies that are held together, by Steiner's theorem; all in one frame.
     ///
     /// ```
-    /// use d2m_dynamics::MassProperties;
+    /// use d2m_mesh::MassProperties;
     /// use glam::{DMat3, DVec3};
     /// let ball = |x: f64| MassProperties::try_new(2.0, DVec3::X * x, DMat3::IDENTITY * 0.1);
     /// let dumbbell = MassProperties::together(&[ball(-1.0)?, ball(1.0)?]);
     /// assert_eq!((dumbbell.mass, dumbbell.center), (4.0, DVec3::ZERO));
     /// assert_eq!(dumbbell.inertia, DMat3::from_diagonal(DVec3::new(0.2, 4.2, 4.2)));
-    /// # Ok::<(), d2m_dynamics::MassError>(())
+    /// # Ok::<(), d2m_mesh::MassError>(())
     /// ```
     pub fn together(masses: &[Self]) -> Self {
         let mass: f64 = masses.iter().map(|own| own.mass).sum();
@@ -54,6 +58,22 @@ impl MassProperties {
         };
         let inertia = masses.iter().map(about).fold(DMat3::ZERO, |sum, own| sum + own);
         Self { mass, center, inertia }
+    }
+
+    /// The integrals of [`Self::try_from_density`] with a density of one, whatever the surface encloses: what is enclosed twice counts twice,
+    /// and of an open surface they mean nothing. A surface that is oriented inward counts as outward, a triangle that repeats another one not.
+    ///
+    /// ```
+    /// use d2m_mesh::{MassProperties, TriMesh};
+    /// use glam::DVec3;
+    /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let mesh = TriMesh::try_new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+    /// assert!((MassProperties::of_enclosed(&mesh).mass - 1.0 / 6.0).abs() < 1e-15);
+    /// # Ok::<(), d2m_mesh::MeshError>(())
+    /// ```
+    pub fn of_enclosed(mesh: &TriMesh) -> Self {
+        let repeated = Closedness::of(mesh).repeated;
+        integrate(mesh, |triangle| repeated.binary_search(&(triangle as u32)).is_err())
     }
 
     /// Given numbers, checked.
@@ -103,8 +123,8 @@ impl MassProperties {
         if !(density.is_finite() && density > 0.0) {
             return Err(MassError::Density { value: density });
         }
-        parts::check(mesh)?;
-        let solid = integrate(mesh);
+        check(mesh)?;
+        let solid = Self::of_enclosed(mesh);
         Self::try_new(solid.mass * density, solid.center, solid.inertia * density)
             .map_err(|_| solid.fault("density", density))
     }
@@ -164,8 +184,37 @@ fn largest(m: &DMat3) -> f64 {
     m.to_cols_array().into_iter().fold(0.0, |most, x| x.abs().max(most))
 }
 
-/// Integrals of density one; a mesh that is oriented inward counts as outward.
-pub(crate) fn integrate(mesh: &TriMesh) -> MassProperties {
+/// Closed, consistently oriented, parts that do not overlap: then the integral counts every point of the solid once.
+fn check(mesh: &TriMesh) -> Result<(), MassError> {
+    let Closedness { watertight, oriented, .. } = Closedness::of(mesh);
+    if !(watertight && oriented) {
+        let topology = Topology::new(mesh);
+        let open = topology.edges().iter().find(|edge| !edge.is_consistently_oriented());
+        let ends = open.map_or([0; 2], |edge| edge.vertices);
+        let [from, to] = ends.map(|vertex| mesh.vertices()[vertex as usize]);
+        return Err(MassError::Open { from, to });
+    }
+    let MeshParts { parts, crossing, .. } = MeshParts::new(mesh);
+    let overlap = |[i, j]: [usize; 2]| {
+        let [first, second] = [i.min(j), i.max(j)].map(|part| parts[part].first_triangle as usize);
+        MassError::PartsOverlap { first, second }
+    };
+    if let Some(&pair) = crossing.first() {
+        return Err(overlap(pair));
+    }
+    // Inside a cavity the winding number is zero, inside the solid one (or minus one, for a surface that faces inward).
+    let is_twice = |part: &MeshPart| {
+        let own = if part.signed_volume < 0.0 { -1 } else { 1 };
+        part.winding_outside.is_none_or(|outside| (outside + own).abs() > 1)
+    };
+    match parts.iter().position(is_twice) {
+        Some(part) => Err(overlap([part, usize::from(part == 0)])),
+        None => Ok(()),
+    }
+}
+
+/// Integrals of density one over what these triangles enclose; a mesh that is oriented inward counts as outward.
+fn integrate(mesh: &TriMesh, counts: impl Fn(usize) -> bool) -> MassProperties {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for vertices in mesh.triangles() {
         for &index in vertices {
@@ -177,7 +226,7 @@ pub(crate) fn integrate(mesh: &TriMesh) -> MassProperties {
     let mut volume = Sum::default();
     let mut first = [Sum::default(); 3];
     let mut second = [Sum::default(); 6];
-    for triangle in 0..mesh.triangle_count() {
+    for triangle in (0..mesh.triangle_count()).filter(|&triangle| counts(triangle)) {
         let [a, b, c] = mesh.corners(triangle).map(|p| p - origin);
         let d = a.dot(b.cross(c)) / 6.0;
         let s = a + b + c;

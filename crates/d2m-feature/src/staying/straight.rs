@@ -5,15 +5,14 @@
 //! an edge passes through a triangle by more than anything moves; two material points part by their relative velocity; a vertex stays
 //! within a height of a face, above its inside, while it slides along it. docs/theory/questions.md, "Staying in contact".
 
-use crate::Moving;
-use d2m_feature::proven_crossing;
-use d2m_feature::triangle_distance;
+use super::MovingTriangle;
+use crate::{proven_crossing, triangle_distance};
 use d2m_interval::Interval;
 use d2m_lanes::UP;
-use d2m_mesh::margin::length;
+use d2m_motion::length;
 use glam::DVec3;
 
-/// Placing a corner rounds by less than 16u of the lengths (see [`super::true_poses`]), and its velocity by as much.
+/// Placing a corner rounds by less than 16u of the lengths of a difference, a product with a matrix and a sum, and its velocity by as much.
 const PLACED: f64 = 8.0 * f64::EPSILON;
 /// Products of up to five factors and sums of up to twelve such products round by less than this part of the sum of magnitudes.
 const PRODUCTS: f64 = 32.0 * f64::EPSILON;
@@ -50,19 +49,19 @@ pub(super) struct StraightPair {
 
 impl StraightPair {
     /// The span has no joint of the motions inside of it. Where the motions' enclosures know nothing the error is infinite.
-    pub(super) fn new(bodies: &[Moving<'_>; 2], triangles: [u32; 2], from: f64, to: f64) -> Self {
+    pub(super) fn new(triangles: &[MovingTriangle<'_>; 2], from: f64, to: f64) -> Self {
         let middle = (from + 0.5 * (to - from)).clamp(from, to);
         let half = (to - middle).max(middle - from) * UP;
-        let origin = bodies[1].motion.pose_and_twist(middle).0.translation;
+        let origin = triangles[1].motion.pose_and_twist(middle).0.translation;
         let span = Interval::new(from, to);
-        let states = bodies.map(|body| body.motion.enclose_state_about(middle, origin));
-        let kinematics = bodies.map(|body| body.motion.enclose_kinematics(span));
+        let states = triangles.map(|triangle| triangle.motion.enclose_state_about(middle, origin));
+        let kinematics = triangles.map(|triangle| triangle.motion.enclose_kinematics(span));
         let square = 0.5 * half * half;
         let mut error = square * (kinematics[0].linear_rate - kinematics[1].linear_rate).bound_length() * UP;
         let mut corners = [[Line { place: DVec3::ZERO, velocity: DVec3::ZERO }; 3]; 2];
         for k in 0..2 {
             let (state, rates) = (&states[k], &kinematics[k]);
-            let given = bodies[k].body.mesh().corners(triangles[k] as usize);
+            let given = triangles[k].corners;
             let far = given.iter().map(|&p| length(p - state.at)).fold(0.0, f64::max) * UP;
             let spin =
                 length(state.angular) + state.angular_radius + half * rates.angular_rate.bound_length();
