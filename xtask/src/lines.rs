@@ -14,12 +14,32 @@ pub(crate) struct Options {
     /// A line for each capability of xtask/capabilities.toml and one for the rest, instead of one a crate.
     #[arg(long)]
     capabilities: bool,
+    /// Comments count, too.
+    #[arg(long)]
+    comments: bool,
+}
+
+/// No crate has more lines of code and comments.
+const MOST: usize = 13_000;
+
+/// The crates that have.
+pub(crate) fn check(root: &Path) -> Result<Vec<String>, Box<dyn std::error::Error>> {
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for (package, lines) in counted(root, with_comments)?.into_values() {
+        *counts.entry(package).or_default() += lines;
+    }
+    let too_large = counts.into_iter().filter(|(_, lines)| *lines > MOST);
+    Ok(too_large
+        .map(|(package, lines)| {
+            format!("{package}: {lines} lines of code and comments, more than {MOST}: move some")
+        })
+        .collect())
 }
 
 /// Prints a line for each folder that holds a crate, or for each capability, and the sum.
 pub(crate) fn run(options: &Options) -> TaskResult {
     let root = options.folder.clone().unwrap_or_else(workspace_root);
-    let files = counted(&root)?;
+    let files = counted(&root, if options.comments { with_comments } else { without_comments })?;
     let capabilities = if options.capabilities {
         toml::from_str(&fs::read_to_string(root.join(CAPABILITIES))?)?
     } else {
@@ -45,7 +65,10 @@ pub(crate) fn run(options: &Options) -> TaskResult {
 }
 
 /// Every file of product code below a folder, with its crate and its lines.
-fn counted(root: &Path) -> Result<BTreeMap<PathBuf, (String, usize)>, Box<dyn std::error::Error>> {
+fn counted(
+    root: &Path,
+    count: fn(&str) -> usize,
+) -> Result<BTreeMap<PathBuf, (String, usize)>, Box<dyn std::error::Error>> {
     let mut files = BTreeMap::new();
     let mut open = vec![root.to_path_buf()];
     while let Some(folder) = open.pop() {
@@ -99,12 +122,20 @@ fn product(path: &Path) -> Option<String> {
     (!is_test && !is_tool).then_some(package)
 }
 
-/// Lines up to the module of tests that are neither blank nor a comment.
-fn count(text: &str) -> usize {
+/// Lines up to the module of tests that are not blank.
+fn product_lines(text: &str) -> impl Iterator<Item = &str> {
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
     let tests = lines.windows(2).position(|pair| pair[0] == "#[cfg(test)]" && pair[1].ends_with('{'));
-    let product = &lines[..tests.unwrap_or(lines.len())];
-    product.iter().filter(|line| !line.is_empty() && !line.starts_with("//")).count()
+    let most = tests.unwrap_or(lines.len());
+    lines.into_iter().take(most).filter(|line| !line.is_empty())
+}
+
+fn with_comments(text: &str) -> usize {
+    product_lines(text).count()
+}
+
+fn without_comments(text: &str) -> usize {
+    product_lines(text).filter(|line| !line.starts_with("//")).count()
 }
 
 #[cfg(test)]
@@ -113,8 +144,9 @@ mod tests {
 
     #[test]
     fn tests_comments_and_blank_lines_do_not_count() {
-        assert_eq!(count("//! Doc.\n\nfn f() {} // sum\n#[cfg(test)]\nmod tests {\n    fn g() {}\n}\n"), 1);
-        assert_eq!(count("#[cfg(test)]\nmod tests;\nfn f() {}\n"), 3);
+        let text = "//! Doc.\n\nfn f() {} // sum\n#[cfg(test)]\nmod tests {\n    fn g() {}\n}\n";
+        assert_eq!((without_comments(text), with_comments(text)), (1, 2));
+        assert_eq!(without_comments("#[cfg(test)]\nmod tests;\nfn f() {}\n"), 3);
         let package = |path: &str| product(Path::new(path));
         assert_eq!(package("crates/d2m-x/src/a/b.rs").as_deref(), Some("crates/d2m-x"));
         assert_eq!(package("crates/d2m-x/src/a/tests.rs"), None);
@@ -124,7 +156,7 @@ mod tests {
 
     #[test]
     fn each_file_of_the_table_is_there() {
-        run(&Options { folder: None, capabilities: true }).unwrap();
+        run(&Options { folder: None, capabilities: true, comments: false }).unwrap();
     }
 
     #[test]

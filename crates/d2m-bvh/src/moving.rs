@@ -1,5 +1,6 @@
 use crate::{MeshTree, QueryOptions, Solid};
-use d2m_motion::RigidMotion;
+use d2m_feature::MovingTriangle;
+use d2m_motion::{MovingBall, RigidMotion};
 
 /// A body with its motion.
 ///
@@ -88,6 +89,21 @@ impl<'a, B> Moving<'a, B> {
     pub fn solid_in(&self, options: &QueryOptions) -> Solid {
         self.solid.unwrap_or(options.solid)
     }
+}
+
+impl<'a> Moving<'a> {
+    /// All that matters of the body where constant twists are fitted to its motion.
+    pub(crate) fn ball(self) -> MovingBall<'a> {
+        MovingBall { motion: self.motion, center: self.body.center(), radius: self.body.radius() }
+    }
+}
+
+/// These triangles of two bodies.
+pub(crate) fn triangles_of<'a>(bodies: &[Moving<'a>; 2], triangles: [u32; 2]) -> [MovingTriangle<'a>; 2] {
+    [0, 1].map(|k| {
+        let Moving { body, motion, .. } = bodies[k];
+        MovingTriangle { corners: body.mesh().corners(triangles[k] as usize), motion }
+    })
 }
 
 impl<B> Clone for Moving<'_, B> {

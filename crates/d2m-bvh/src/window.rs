@@ -53,8 +53,7 @@ impl Window {
     }
 }
 
-/// The serde form [start, end], checked on the way in.
-#[cfg(feature = "serde")]
+/// From [start, end], checked: the serde form, too.
 impl TryFrom<[f64; 2]> for Window {
     type Error = QueryError;
 

@@ -14,6 +14,7 @@
 //!
 //! ## Triangles
 //! - [`stay_within`]: do two of them ([`MovingTriangle`]) stay near each other for a while?
+//! - [`TrianglesAt`]: two of them at one time.
 //!
 //! ## Options and answers
 //! - [`ContactOptions`]: tolerance, minimum separation, limits.
@@ -53,6 +54,7 @@ mod staying;
 mod straight_path;
 mod triangle_distance;
 mod triangle_intersection;
+mod triangles_at;
 mod twist_pair;
 mod units;
 
@@ -69,3 +71,4 @@ pub use staying::{MovingTriangle, stay_within};
 pub use straight_path::StraightPaths;
 pub use triangle_distance::{TriangleDistance, TriangleFeature, triangle_distance};
 pub use triangle_intersection::triangles_intersect;
+pub use triangles_at::TrianglesAt;

@@ -30,7 +30,9 @@
 //! ## For a motion of your own
 //! [`Kinematics`], [`CertifiedState`] and [`Ball`] make enclosures tight, [`StateTwist`] is a motion through
 //! the middle of a state, and [`TwistPiece`] says where a motion is a constant twist for a while.
-//! [`CoveredMotion`] holds a motion to the times that it covers. [`length`] is that of a vector in any unit.
+//! [`FittedTwists`] are constant twists near two motions ([`MovingBall`]s) for a while, by a [`FittedClock`].
+//! [`CoveredMotion`] holds a motion to the times that it covers. [`length`] is that of a vector in any unit, [`angle`] that of a
+//! point about an axis.
 //!
 //! ## Errors
 //! [`MotionError`]: a description that was refused. [`OutsideDomain`]: times that a motion does not cover.
@@ -38,6 +40,7 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
+mod angle;
 mod any_motion;
 mod arm;
 mod arm_span;
@@ -50,6 +53,7 @@ mod covered_motion;
 mod double_double_trig;
 mod enclosed;
 mod error;
+mod fitted_twists;
 mod joint;
 mod joint_points;
 mod joint_value;
@@ -82,6 +86,7 @@ mod twist;
 mod two;
 mod two_jets;
 
+pub use angle::angle;
 pub use any_motion::AnyMotion;
 pub use arm::Arm;
 pub use arm_span::ArmSpan;
@@ -92,6 +97,7 @@ pub use composed::Composed;
 pub use constant_twist::ConstantTwist;
 pub use covered_motion::{CoveredMotion, OutsideDomain};
 pub use error::MotionError;
+pub use fitted_twists::{FittedClock, FittedTwists, MovingBall};
 pub use joint::{Joint, JointKind};
 pub use joint_points::JointPoints;
 pub use joint_value::JointValue;

@@ -17,6 +17,7 @@ pub(crate) fn run() -> TaskResult {
     let mut findings = map::check(&root)?;
     findings.extend(arrows::check(&root)?);
     findings.extend(sources::check(&root)?);
+    findings.extend(crate::lines::check(&root)?);
     findings.extend(guarantees::check(&root)?);
     findings.extend(literals::check(&root)?);
     findings.extend(front::check(&root)?);

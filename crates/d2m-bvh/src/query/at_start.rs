@@ -1,12 +1,12 @@
 //! How bodies that are in contact at the start of a window meet there: do they touch, or do they overlap?
 
 use super::rounded::Rounded;
-use super::true_poses::PlacedTriangles;
+use crate::moving::triangles_of;
 use crate::{
     Answered, Contact, Evidence, Meter, Moving, Posed, QueryError, QueryOptions, Solid, StartState,
     TimeOfContact, Window,
 };
-use d2m_feature::{FeaturePair, TriangleDistance, TriangleFeature};
+use d2m_feature::{FeaturePair, TriangleDistance, TriangleFeature, TrianglesAt};
 use d2m_lanes::UP;
 use d2m_mesh::at_rest::{Meeters, Meeting, bound_distance_metered};
 use d2m_mesh::margin::length;
@@ -52,8 +52,9 @@ pub(super) fn judge(
             Contact { start: StartState::Touching, ..found }
         }
         Meeting::Overlapping(triangles) => {
-            let crossing =
-                |triangles: &[u32; 2]| PlacedTriangles::new(bodies, *triangles, time).certainly_cross();
+            let crossing = |triangles: &[u32; 2]| {
+                TrianglesAt::new(&triangles_of(bodies, *triangles), time).certainly_cross()
+            };
             let found = match triangles.filter(crossing) {
                 Some(triangles) => Contact {
                     evidence: Evidence::Crossing,
@@ -147,7 +148,7 @@ pub(super) fn of_pair(
     triangles: [u32; 2],
     normal: DVec3,
 ) -> Contact {
-    let placed = PlacedTriangles::new(bodies, triangles, contact.time_lo);
+    let placed = TrianglesAt::new(&triangles_of(bodies, triangles), contact.time_lo);
     let near = placed.distance();
     let closing_speed = placed.closing_speed(&near, normal);
     let [triangle_a, triangle_b] = triangles;

@@ -14,7 +14,6 @@ mod true_contact;
 #[cfg(feature = "audit")]
 use super::concluded::{Claimed, conclude_apart, sum_of_distances};
 use super::constant_twist::{ask, scene_of_twists};
-use super::fitted_twist::FittedTwists;
 use super::true_poses::Meeting;
 use crate::covered_pair::CoveredPair;
 use crate::options::DEFAULT_TOLERANCE;
@@ -29,7 +28,7 @@ use d2m_mesh::Meter;
 #[cfg(feature = "audit")]
 use d2m_mesh::audit::Place;
 use d2m_mesh::margin::length;
-use d2m_motion::{Chain, ConstantTwist, Pose, RigidMotion, Twist};
+use d2m_motion::{Chain, ConstantTwist, FittedTwists, Pose, RigidMotion, Twist};
 use plane::PlaneSearch;
 use span_length::{Drifting, LastFit, Shortfall};
 
@@ -296,7 +295,7 @@ impl<'a> Advance<'a> {
         if options.mode == Mode::Exists {
             options.mode = Mode::Accurate;
         }
-        let window = clock.window(self.now, until)?;
+        let window = Window::try_from(clock.span(self.now, until))?;
         let answer = self.ask([&twists[0], &twists[1]], window, &options)?;
         #[cfg(feature = "audit")]
         if let Some(by_clock) = answer.free_until(f64::INFINITY) {
@@ -362,8 +361,11 @@ impl<'a> Advance<'a> {
         let mut until = (self.now + longest).min(end).max(self.now.next_up().min(end));
         loop {
             self.count(&SearchCounts { node_tests: TESTS_A_FIT, ..SearchCounts::default() });
-            let fitted =
-                FittedTwists::new(&self.bodies, Interval::new(self.now, until), poses[1].translation);
+            let fitted = FittedTwists::new(
+                &self.bodies.map(Moving::ball),
+                Interval::new(self.now, until),
+                poses[1].translation,
+            );
             let shortest = until <= self.now.next_up();
             if let Some(fitted) = fitted {
                 let tolerance = self.tolerance.max(rounding_tolerance(&fitted));

@@ -6,7 +6,6 @@ mod clearance;
 #[cfg(feature = "audit")]
 mod concluded;
 mod constant_twist;
-mod fitted_twist;
 mod general_motion;
 mod kept_motion;
 mod leave;

@@ -5,8 +5,9 @@
 use super::concluded::{Claimed, conclude_of_triangles, conclude_overlap};
 use super::meshes::of_meshes;
 use super::staying_inside::DeepPoint;
+use crate::moving::triangles_of;
 use crate::{Budget, Meter, Moving, Posed, QueryError, QueryOptions, Solid, TimeOfContact, Window};
-use d2m_feature::{MovingTriangle, stay_within};
+use d2m_feature::stay_within;
 use d2m_mesh::at_rest::{Nearness, near_pair};
 use d2m_mesh::at_rest::{is_contained, some_colliding_pairs};
 
@@ -171,11 +172,7 @@ impl<'a> Walk<'a> {
     }
 
     fn stays(&self, pair: [u32; 2], from: f64, to: f64) -> bool {
-        let triangles = [0, 1].map(|k| {
-            let Moving { body, motion, .. } = self.bodies[k];
-            MovingTriangle { corners: body.mesh().corners(pair[k] as usize), motion }
-        });
-        let stays = stay_within(&triangles, from, to, self.level);
+        let stays = stay_within(&triangles_of(&self.bodies, pair), from, to, self.level);
         #[cfg(feature = "audit")]
         if stays {
             use d2m_mesh::audit::{Place, Promise};

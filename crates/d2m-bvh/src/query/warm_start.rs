@@ -2,7 +2,6 @@
 
 use super::at_start::judged;
 use super::constant_twist::{ask, scene_of, scene_of_twists};
-use super::fitted_twist::FittedTwists;
 use super::general_motion::{general_motion, rounding_tolerance, tolerance_of};
 use super::leave::of_departing;
 use super::rounded::Rounded;
@@ -18,6 +17,7 @@ use crate::{
 use d2m_feature::triangles_intersect;
 use d2m_interval::Interval;
 use d2m_lanes::{F64x4, UP};
+use d2m_motion::FittedTwists;
 
 /// As [`time_of_contact`](crate::time_of_contact), with a cache that one pair of bodies keeps from query to query, for
 /// instance from one step of a simulation to the next.
@@ -198,7 +198,7 @@ impl<'a> WindowFit<'a> {
         let separation = (options.min_separation + off) * UP;
         let options_of_fit = options.with_tolerance(tolerance).with_min_separation(separation);
         let twists = [0, 1].map(|k| MovingTree { tree: bodies[k].body, twist: fitted.twists[k] });
-        let span = fitted.clock.window(window.start(), window.end()).ok()?;
+        let span = Window::try_from(fitted.clock.span(window.start(), window.end())).ok()?;
         let solids = bodies.map(|body| body.solid_in(options));
         let scene = scene_of_twists(twists, solids, span, &options_of_fit).ok()?;
         let trajectory = RelativeTrajectory::of(&scene);
@@ -215,7 +215,7 @@ fn fit_to_window(pair: &CoveredPair<'_>) -> Option<FittedTwists> {
         return None;
     }
     let origin = bodies[1].motion.pose_and_twist(window.start()).0.translation;
-    FittedTwists::new(bodies, Interval::new(window.start(), window.end()), origin)
+    FittedTwists::new(&bodies.map(Moving::ball), Interval::new(window.start(), window.end()), origin)
 }
 
 /// Do the bodies meet anywhere in the window? The mode of the options does not matter.

@@ -1,6 +1,5 @@
 //! Time that is skipped at once: swept volumes of bodies, and what a screw motion leaves unchanged.
 
-mod angle;
 mod axis_distance;
 mod orbits;
 mod projection;

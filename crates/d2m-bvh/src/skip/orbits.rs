@@ -1,11 +1,11 @@
 //! The triangles of a body, one of each orbit class: those that the screw carries into each other have one projection.
 
-use super::angle::angle;
 use super::projection::{Piece, ProjectedVertex, Range};
 use super::projection_tree::ProjectionTree;
 use super::screw::Screw;
 use d2m_mesh::margin::UP;
 use d2m_mesh::{Exhausted, Meter};
+use d2m_motion::angle;
 use glam::DVec3;
 use std::collections::HashMap;
 use std::f64::consts::PI;

@@ -6,9 +6,9 @@
 //!
 //! See docs/theory/engine.md, "Screws".
 
-use super::angle::angle;
 use super::axis_distance::distance_in_plane;
 use d2m_mesh::margin::UP;
+use d2m_motion::angle;
 use glam::DVec3;
 use std::f64::consts::PI;
 

@@ -1,8 +1,8 @@
 //! Pairs of triangles at single times: proven upper bounds of a clearance, and the way down to a local minimum.
 
-use crate::query::true_poses::PlacedTriangles;
+use crate::moving::triangles_of;
 use crate::{Moving, Posed, Window};
-use d2m_feature::TriangleDistance;
+use d2m_feature::{TriangleDistance, TrianglesAt};
 use d2m_mesh::at_rest::{Nearness, near_pair};
 use glam::DVec3;
 
@@ -55,7 +55,7 @@ pub(super) struct Sampler<'a> {
 impl Sampler<'_> {
     /// Two triangles at a time of the window.
     pub(super) fn pair_at(&self, triangles: [u32; 2], time: f64) -> Sample {
-        let placed = PlacedTriangles::new(&self.bodies, triangles, time);
+        let placed = TrianglesAt::new(&triangles_of(&self.bodies, triangles), time);
         let near = placed.distance();
         let along = (near.point_b - near.point_a).normalize_or_zero();
         Sample {

@@ -1,14 +1,15 @@
 //! Where time has no more numbers, and where pieces of a motion do not quite meet.
 
 use super::{Advance, FittedSpan, SMALL_PART, Step, rounding_tolerance};
-use crate::query::fitted_twist::FittedTwists;
-use crate::query::true_poses::PlacedTriangles;
-use crate::{Contact, Evidence, Mode, QueryError, StartState, TimeOfContact};
+use crate::moving::triangles_of;
+use crate::{Contact, Evidence, Mode, Moving, QueryError, StartState, TimeOfContact, Window};
+use d2m_feature::TrianglesAt;
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_lanes::UP;
 #[cfg(feature = "audit")]
 use d2m_mesh::audit::Place;
 use d2m_mesh::margin::length;
+use d2m_motion::FittedTwists;
 
 /// Bodies that sweep boxes of at most this times their travel and radius are known well enough for a contact where time has no
 /// more numbers. It decides what is answered there, and proves nothing.
@@ -45,7 +46,7 @@ impl Advance<'_> {
         }
         options.tolerance = Some(deviation.max(tolerance));
         options.min_separation = (deviation + self.options.min_separation).next_up();
-        match self.ask([&twists[0], &twists[1]], clock.window(self.now, until)?, &options)? {
+        match self.ask([&twists[0], &twists[1]], Window::try_from(clock.span(self.now, until))?, &options)? {
             TimeOfContact::Separated => {
                 #[cfg(feature = "audit")]
                 self.conclude(Place::FittedTwists, until, deviation.max(tolerance), deviation);
@@ -61,7 +62,7 @@ impl Advance<'_> {
             TimeOfContact::Contact(_) if !self.sweep_is_known(until) => Ok(undecided),
             TimeOfContact::Contact(contact) => {
                 let triangles = [contact.triangle_a, contact.triangle_b];
-                let placed = PlacedTriangles::new(&self.bodies, triangles, self.now);
+                let placed = TrianglesAt::new(&triangles_of(&self.bodies, triangles), self.now);
                 let left = placed.bound_distance(&placed.distance()) - self.options.min_separation;
                 if !left.is_finite() {
                     return Ok(undecided);
@@ -82,7 +83,9 @@ impl Advance<'_> {
     /// The bodies as they are now, with so much more of minimum separation; `None` where their enclosures know too little.
     fn still(&mut self, more: f64) -> Result<Option<Still>, QueryError> {
         let origin = self.poses_at(self.now)[1].0.translation;
-        let Some(still) = FittedTwists::new(&self.bodies, Interval::point(self.now), origin) else {
+        let Some(still) =
+            FittedTwists::new(&self.bodies.map(Moving::ball), Interval::point(self.now), origin)
+        else {
             return Ok(None);
         };
         let tolerance = self.tolerance.max(rounding_tolerance(&still));
@@ -95,7 +98,7 @@ impl Advance<'_> {
         }
         options.tolerance = Some(tolerance - 2.0 * still.deviation);
         options.min_separation = (still.deviation + more + self.options.min_separation).next_up();
-        let now = still.clock.window(self.now, self.now)?;
+        let now = Window::try_from(still.clock.span(self.now, self.now))?;
         let answer = self.ask([&still.twists[0], &still.twists[1]], now, &options)?;
         Ok(Some(Still { answer, tolerance }))
     }
@@ -125,7 +128,7 @@ impl Advance<'_> {
             TimeOfContact::Contact(contact) => contact,
         };
         let triangles = [contact.triangle_a, contact.triangle_b];
-        let placed = PlacedTriangles::new(&self.bodies, triangles, self.now);
+        let placed = TrianglesAt::new(&triangles_of(&self.bodies, triangles), self.now);
         let left = placed.bound_distance(&placed.distance()) - self.options.min_separation;
         // Before this time only the piece before counts, which is free.
         let contact = Contact {

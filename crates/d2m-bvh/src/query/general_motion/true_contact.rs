@@ -1,10 +1,11 @@
 //! From a contact of fitted motions to one of the true ones.
 
 use super::Advance;
+use crate::moving::triangles_of;
 use crate::query::at_start::of_pair;
 use crate::query::report::MOST_LEFT;
-use crate::query::true_poses::PlacedTriangles;
 use crate::{Contact, Evidence, Mode, StartState};
+use d2m_feature::TrianglesAt;
 
 impl Advance<'_> {
     /// Data of the fitted motions expressed by the true ones: points by their weights, speeds by the true twists. That the
@@ -56,7 +57,7 @@ impl Advance<'_> {
     /// The data of the triangles of a contact where the true motions have them at a time, which is all of its bracket.
     pub(super) fn of_same_triangles(&self, time: f64, contact: &Contact) -> Contact {
         let triangles = [contact.triangle_a, contact.triangle_b];
-        let near = PlacedTriangles::new(&self.bodies, triangles, time).distance();
+        let near = TrianglesAt::new(&triangles_of(&self.bodies, triangles), time).distance();
         let normal = (near.point_b - near.point_a).normalize_or(contact.normal);
         let then = self.with_start(Contact { time_lo: time, time_hi: time, ..*contact });
         of_pair(then, &self.bodies, triangles, normal)
@@ -65,7 +66,7 @@ impl Advance<'_> {
     /// Proof that the two triangles of a contact share a point at the end of its bracket.
     pub(super) fn crosses(&self, contact: &Contact) -> bool {
         let triangles = [contact.triangle_a, contact.triangle_b];
-        PlacedTriangles::new(&self.bodies, triangles, contact.time_hi).certainly_cross()
+        TrianglesAt::new(&triangles_of(&self.bodies, triangles), contact.time_hi).certainly_cross()
     }
 
     /// The separation of the reported triangles where the true motions have them. Where numbers for time are too far apart for the
@@ -76,7 +77,8 @@ impl Advance<'_> {
             return contact;
         }
         let triangles = [contact.triangle_a, contact.triangle_b];
-        let separation = PlacedTriangles::new(&self.bodies, triangles, contact.time_lo).distance().upper;
+        let separation =
+            TrianglesAt::new(&triangles_of(&self.bodies, triangles), contact.time_lo).distance().upper;
         if separation.is_nan() {
             return contact;
         }

@@ -2,28 +2,69 @@
 //!
 //! docs/theory/motions.md, section 3, derives the bound.
 
-use crate::{Moving, QueryError, Window};
+use crate::{Ball, CertifiedState, ConstantTwist, Kinematics, RigidMotion, StateTwist, length};
 use d2m_interval::Interval;
 use d2m_lanes::UP;
-use d2m_mesh::margin::length;
-use d2m_motion::{Ball, CertifiedState, ConstantTwist, Kinematics, StateTwist};
 use glam::DVec3;
 
+/// A body that moves, as far as fits need it.
+///
+/// ```
+/// use d2m_motion::{ConstantTwist, FittedTwists, MovingBall};
+/// use glam::DVec3;
+/// let ball = MovingBall { motion: &ConstantTwist::REST, center: DVec3::X, radius: 0.5 };
+/// let fitted = FittedTwists::new(&[ball; 2], d2m_interval::Interval::new(0.0, 1.0), DVec3::ZERO).unwrap();
+/// assert!(fitted.deviation < 1e-12 && (fitted.size - 2.0 * 1.5).abs() < 1e-9);
+/// ```
+#[derive(Clone, Copy)]
+pub struct MovingBall<'m> {
+    /// How it moves.
+    pub motion: &'m dyn RigidMotion,
+    /// All of its points are within the radius of this one, in its frame.
+    pub center: DVec3,
+    /// How far they are at most.
+    pub radius: f64,
+}
+
+impl core::fmt::Debug for MovingBall<'_> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self { center, radius, .. } = self;
+        f.debug_struct("MovingBall").field("center", center).field("radius", radius).finish_non_exhaustive()
+    }
+}
+
 /// The constant twists that have the states of two motions at one time of a span.
+///
+/// ```
+/// use d2m_motion::{FittedTwists, MovingBall, Pose, RigidMotion, Spline, SplineDegree};
+/// use glam::{DQuat, DVec3};
+/// let frames = [0.0, 1.0, 2.0, 3.0].map(|t: f64| {
+///     (t, Pose { translation: DVec3::X * t * t, rotation: DQuat::IDENTITY, at: DVec3::ZERO })
+/// });
+/// let spline = Spline::try_through(&frames, SplineDegree::Cubic)?;
+/// let ball = |motion| MovingBall { motion, center: DVec3::ZERO, radius: 0.1 };
+/// let bodies = [ball(&spline as &dyn RigidMotion), ball(&d2m_motion::ConstantTwist::REST)];
+/// let fitted = FittedTwists::new(&bodies, d2m_interval::Interval::new(1.0, 1.1), DVec3::ZERO).unwrap();
+/// let [lo, _] = fitted.clock.span(1.0, 1.1);
+/// let [at, near] = [spline.pose_and_twist(1.0), fitted.twists[0].pose_and_twist(lo)].map(|(pose, _)| pose.translation);
+/// assert!((at - near).length() <= fitted.deviation && fitted.deviation < 5e-3);
+/// # Ok::<(), d2m_motion::MotionError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
-pub(super) struct FittedTwists {
+#[non_exhaustive]
+pub struct FittedTwists {
     /// The two motions over the fitted clock, their positions relative to the origin that was given.
-    pub(super) twists: [ConstantTwist; 2],
+    pub twists: [ConstantTwist; 2],
     /// The time by which they go.
-    pub(super) clock: FittedClock,
+    pub clock: FittedClock,
     /// At every time of the span the distance of any point of the one body from any of the other differs by at most this.
-    pub(super) deviation: f64,
+    pub deviation: f64,
     /// The part of it that no shorter span takes away.
-    pub(super) floor: f64,
+    pub floor: f64,
     /// How much of it goes like the span, not like its square: what the enclosures of velocities at a single time leave open.
-    pub(super) drift: f64,
+    pub drift: f64,
     /// The lengths that its rounding is about: how far the bodies' points are from the world's origin at most, together.
-    pub(super) size: f64,
+    pub size: f64,
 }
 
 /// One motion, expressed by one body point.
@@ -45,7 +86,7 @@ impl FittedTwists {
     ///
     /// Each motion is expressed by its reference point and by the one that accelerates least; what gives the smaller
     /// deviation is taken.
-    pub(super) fn new(bodies: &[Moving<'_>; 2], span: Interval, origin: DVec3) -> Option<Self> {
+    pub fn new(bodies: &[MovingBall<'_>; 2], span: Interval, origin: DVec3) -> Option<Self> {
         let (from, to) = (span.lo(), span.hi());
         let middle = (from + 0.5 * (to - from)).clamp(from, to);
         let middle = if middle < to { middle } else { from };
@@ -74,7 +115,7 @@ impl FittedTwists {
     }
 }
 
-fn candidates(body: &Moving<'_>, span: Interval, middle: f64, origin: DVec3) -> [Option<Fit>; 2] {
+fn candidates(body: &MovingBall<'_>, span: Interval, middle: f64, origin: DVec3) -> [Option<Fit>; 2] {
     let kinematics = body.motion.enclose_kinematics(span);
     let state = body.motion.enclose_state_about(middle, origin);
     let one = |state: CertifiedState, kinematics: &Kinematics| {
@@ -84,13 +125,13 @@ fn candidates(body: &Moving<'_>, span: Interval, middle: f64, origin: DVec3) -> 
             rotation_radius,
             acceleration: kinematics.linear_rate,
             angular_rate: kinematics.angular_rate,
-            reach: (body.body.radius() + length(body.body.center() - state.at)) * UP,
+            reach: (body.radius + length(body.center - state.at)) * UP,
             state,
         })
     };
     let (w, a) = (state.angular, kinematics.linear_rate.center);
     let across = (a - w * (w.dot(a) / w.length_squared())) / w.length_squared();
-    let near = across.length() <= POLE_WITHIN * body.body.radius() && across != DVec3::ZERO;
+    let near = across.length() <= POLE_WITHIN * body.radius && across != DVec3::ZERO;
     let pole = near.then(|| {
         // ω × (ω × e) = −a across ω.
         let at = state.at + state.rotation.transpose() * across;
@@ -143,8 +184,18 @@ fn between(a: &Fit, b: &Fit, half: f64, clock: FittedClock) -> FittedTwists {
 
 /// The time s(t) = x + ½κx², x = t − m, by which fitted motions go that become faster or slower together; the time itself where κ
 /// is zero.
+///
+/// ```
+/// use d2m_motion::{ConstantTwist, FittedTwists, MovingBall};
+/// use glam::DVec3;
+/// let ball = MovingBall { motion: &ConstantTwist::REST, center: DVec3::ZERO, radius: 1.0 };
+/// let span = d2m_interval::Interval::new(2.0, 3.0);
+/// let clock = FittedTwists::new(&[ball; 2], span, DVec3::ZERO).unwrap().clock;
+/// assert_eq!(clock.span(2.0, 3.0), [2.0, 3.0]); // nothing gains speed
+/// assert_eq!((clock.time_down(2.5, 2.0), clock.time_up(2.5, 3.0)), (2.5, 2.5));
+/// ```
 #[derive(Clone, Copy, Debug)]
-pub(super) struct FittedClock {
+pub struct FittedClock {
     middle: f64,
     bend: f64,
 }
@@ -160,12 +211,9 @@ impl FittedClock {
         if self.bend == 0.0 { Interval::point(time) } else { x + x.sqr() * (0.5 * self.bend) }
     }
 
-    /// The span by this clock, and what rounding adds to it.
-    ///
-    /// # Errors
-    /// A span whose ends or length are not finite on this clock.
-    pub(super) fn window(&self, from: f64, to: f64) -> Result<Window, QueryError> {
-        Window::try_new(self.at(from).lo(), self.at(to).hi())
+    /// The span by this clock, and what rounding adds to it; its ends may be infinite.
+    pub fn span(&self, from: f64, to: f64) -> [f64; 2] {
+        [self.at(from).lo(), self.at(to).hi()]
     }
 
     fn estimate(&self, clock: f64) -> f64 {
@@ -176,12 +224,12 @@ impl FittedClock {
     }
 
     /// A time not after the clock says this, and not before `least`, up to which nothing is claimed then.
-    pub(super) fn time_down(&self, clock: f64, least: f64) -> f64 {
+    pub fn time_down(&self, clock: f64, least: f64) -> f64 {
         self.safe_time(clock, -1.0, |s| s.hi() <= clock).map_or(least, |time| time.max(least))
     }
 
     /// A time not before the clock says this; `most` where rounding leaves that open.
-    pub(super) fn time_up(&self, clock: f64, most: f64) -> f64 {
+    pub fn time_up(&self, clock: f64, most: f64) -> f64 {
         self.safe_time(clock, 1.0, |s| s.lo() >= clock).map_or(most, |time| time.min(most))
     }
 
@@ -198,8 +246,7 @@ impl FittedClock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{MeshTree, TriMesh};
-    use d2m_motion::{Chain, Joint, JointKind, JointValue, RigidMotion};
+    use crate::{Chain, Joint, JointKind, JointValue};
     use glam::DQuat;
 
     fn value(coefficients: &[f64]) -> JointValue {
@@ -220,9 +267,9 @@ mod tests {
     fn clocks_are_rounded_to_the_safe_side() {
         for (middle, bend) in [(0.5, 0.3), (0.5, -0.9), (1e5 + 0.5, 0.7), (-3.0, 1e-9), (2.0, 0.0)] {
             let clock = FittedClock { middle, bend };
-            let window = clock.window(middle - 0.5, middle + 0.5).unwrap();
+            let [start, end] = clock.span(middle - 0.5, middle + 0.5);
             for i in 0..=200 {
-                let s = window.start() + window.length() * f64::from(i) / 200.0;
+                let s = start + (end - start) * f64::from(i) / 200.0;
                 let (down, up) = (clock.time_down(s, middle - 1.0), clock.time_up(s, middle + 1.0));
                 assert!(clock.at(down).hi() <= s && s <= clock.at(up).lo(), "{middle} {bend} {s}");
                 assert!(up - down <= 32.0 * f64::EPSILON * (1.0 + middle.abs()), "{middle} {bend} {s}");
@@ -233,8 +280,9 @@ mod tests {
     /// Where no number lies within the span and the next piece of the motion begins at its end, in which it rests.
     #[test]
     fn spans_without_a_number_inside_are_fitted_in_their_own_piece() {
-        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
-        let body = MeshTree::new(TriMesh::try_new(corners, vec![[0, 1, 2]]).unwrap());
+        fn ball(motion: &dyn RigidMotion) -> MovingBall<'_> {
+            MovingBall { motion, center: DVec3::new(0.5, 0.5, 0.0), radius: 0.8 }
+        }
         for begin in [1.0, 1.0f64.next_up(), 3.0] {
             let times = vec![begin, begin.next_up(), begin.next_up().next_up()];
             let u = times[1] - times[0];
@@ -242,7 +290,7 @@ mod tests {
             let kind = JointKind::Prismatic { axis: DVec3::X, value };
             let joint = Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, kind).unwrap();
             let (motion, still) = (Chain::try_new(vec![joint]).unwrap(), ConstantTwist::REST);
-            let bodies = [Moving::new(&body, &motion as &dyn RigidMotion), Moving::new(&body, &still)];
+            let bodies = [ball(&motion), ball(&still)];
             let fitted = FittedTwists::new(&bodies, Interval::new(times[0], times[1]), DVec3::ZERO).unwrap();
             assert_eq!(fitted.clock.middle, times[0]);
             assert!(fitted.twists[0].linear_velocity().x > 9.0 / u, "{:?}", fitted.twists[0]);
@@ -253,11 +301,10 @@ mod tests {
     /// the bound at all times of the span, and nearly reached by some.
     #[test]
     fn fitted_twists_stay_within_the_deviation() {
-        let rod = |length: f64| {
-            let corners = vec![-DVec3::X * length, DVec3::X * length, DVec3::Y * 1e-3];
-            MeshTree::new(TriMesh::try_new(corners, vec![[0, 1, 2]]).unwrap())
-        };
-        let (body, point) = (rod(1.0), rod(1e-6));
+        let corners = [-DVec3::X, DVec3::X, DVec3::Y * 1e-3];
+        fn ball(motion: &dyn RigidMotion, radius: f64) -> MovingBall<'_> {
+            MovingBall { motion, center: DVec3::ZERO, radius }
+        }
         let still = ConstantTwist::REST;
         let mut sharpest = [0.0_f64; 6];
         for (kind, joints) in [
@@ -281,7 +328,7 @@ mod tests {
         {
             let motion = Chain::try_new(joints).unwrap();
             for (from, to) in [(0.0, 0.1), (0.4, 0.5), (-0.3, 0.3), (-0.05, 0.05), (1.0, 1.000_01)] {
-                let bodies = [Moving::new(&body, &motion as &dyn RigidMotion), Moving::new(&point, &still)];
+                let bodies = [ball(&motion, 1.0), ball(&still, 1e-6)];
                 let fitted = FittedTwists::new(&bodies, Interval::new(from, to), DVec3::ZERO).unwrap();
                 assert!(fitted.floor <= fitted.deviation && fitted.floor < 1e-13);
                 let mut most = 0.0_f64;
@@ -289,7 +336,7 @@ mod tests {
                     let t = from + (to - from) * f64::from(i) / 20.0;
                     let (true_pose, _) = motion.pose_and_twist(t);
                     let (near, _) = fitted.twists[0].pose_and_twist(fitted.clock.at(t).mid());
-                    for corner in body.mesh().vertices() {
+                    for corner in &corners {
                         let off = true_pose.transform_point(*corner) - near.transform_point(*corner);
                         assert!(off.length() <= fitted.deviation + 1e-14, "{kind}, {t}");
                         most = most.max(off.length());
@@ -300,7 +347,7 @@ mod tests {
                 }
             }
             if kind == 3 {
-                let bodies = [Moving::new(&body, &motion as &dyn RigidMotion), Moving::new(&point, &still)];
+                let bodies = [ball(&motion, 1.0), ball(&still, 1e-6)];
                 let fitted = FittedTwists::new(&bodies, Interval::new(0.0, 1e-4), DVec3::ZERO).unwrap();
                 assert!(fitted.deviation < 1e-2 * 0.5 * 0.5e-4 * 0.5e-4 * 4.0, "{fitted:?}");
             }

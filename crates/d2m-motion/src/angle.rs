@@ -21,7 +21,12 @@ const EIGHTHS: [f64; 9] = [
 /// arctan(y/x) in its quadrant; wrong by less than 8·2⁻⁵³. Zero for a point on the axis.
 ///
 /// The roundings are counted in docs/theory/engine.md, "Screws". A quotient that underflows errs by less than any of them.
-pub(super) fn angle(y: f64, x: f64) -> f64 {
+///
+/// ```
+/// use core::f64::consts::FRAC_PI_4;
+/// assert!((d2m_motion::angle(-3.0, 3.0) + FRAC_PI_4).abs() < 1e-15);
+/// ```
+pub fn angle(y: f64, x: f64) -> f64 {
     let (wide, high) = (x.abs(), y.abs());
     let steep = high > wide;
     let (small, large) = if steep { (wide, high) } else { (high, wide) };
@@ -44,7 +49,7 @@ pub(super) fn angle(y: f64, x: f64) -> f64 {
 mod tests {
     use super::*;
     use d2m_interval::Interval;
-    use d2m_mesh::margin::UNIT_F64;
+    use d2m_lanes::UNIT as UNIT_F64;
     use d2m_testing::{Draw, KnuthRandom};
 
     /// Against the enclosures of the interval library, in all octants and next to their borders.
