@@ -328,11 +328,14 @@ fn friction_alone_crushes_nothing() {
 
 /// The lower edge of a bar that moves over the floor meets stones from above, where friction with both locks them. Without friction they could
 /// slip out ahead, or below: nothing is crushed, and nothing given up. What friction locks shares its room for as long as there is some: it
-/// meets about a hundred times, and about four hundred times where velocities are off the law instead.
+/// meets about a hundred times, and about four hundred times where velocities are off the law instead. Where no velocities obey it, as in one of
+/// ten beginnings of the last stone, friction gives way before there is no room left.
 #[test]
 fn stones_slip_out_from_under_an_edge() {
     let mut events = 0;
-    for (seed, height, friction) in [(0, 0.17, 0.4), (0, 0.17, 0.6), (1, 0.14, 0.6), (2, 0.14, 0.6)] {
+    let beginnings = 8;
+    let stones = [(0, 0.17, 0.4), (0, 0.17, 0.6), (1, 0.14, 0.6), (2, 0.14, 0.6)];
+    for (k, (seed, height, friction)) in (0..beginnings).flat_map(|k| stones.map(|stone| (k, stone))) {
         let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
         simulation.add(&slab(1.0).with_friction(friction)).unwrap();
         let motion = ConstantTwist::REST
@@ -342,14 +345,14 @@ fn stones_slip_out_from_under_an_edge() {
             Body::new("bar", tree("box?x=0.5&y=0.1&z=0.04")).with_kind(Kind::Kinematic(Arc::new(motion)));
         simulation.add(&bar.with_friction(friction)).unwrap();
         let stone = tree(&format!("pebble?triangles=100&seed={seed}&scale=0.13"));
-        let stone =
-            Body::new("stone", stone).with_position(DVec3::new(0.0, 0.16, -0.1)).with_friction(friction);
+        let place = DVec3::new(1e-9 * f64::from(k), 0.16, -0.1);
+        let stone = Body::new("stone", stone).with_position(place).with_friction(friction);
         simulation.add(&stone).unwrap();
         let run = counted(&mut simulation, 1.0);
         assert_eq!(run.skipped, 0.0, "{seed}");
         events += run.events;
     }
-    assert!(events < 200, "{events}");
+    assert!(events < beginnings * 200, "{events}");
 }
 
 /// A prism of eight sides along z.

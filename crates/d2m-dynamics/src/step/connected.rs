@@ -252,9 +252,16 @@ impl Step<'_> {
             if pair.contacts.is_empty() && expected.is_none() {
                 continue;
             }
-            group.contacts.extend(expected.into_iter().flatten());
-            group.contacts.extend(pair.contacts.iter().map(|point| {
+            let slips = self.slips.contains(&key.0) || self.slips.contains(&key.1);
+            let with_friction = |point: &ContactPoint| {
                 let mut point = *point;
+                if slips {
+                    point.material.friction = 0.0;
+                }
+                point
+            };
+            group.contacts.extend(expected.into_iter().flatten().map(with_friction));
+            group.contacts.extend(pair.contacts.iter().map(with_friction).map(|mut point| {
                 point.impulse *= part;
                 point.sliding = point.sliding.map(|x| x * part);
                 point

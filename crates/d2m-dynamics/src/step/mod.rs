@@ -32,6 +32,10 @@ const MOST_AT_ONCE: u32 = 8;
 /// Events of bodies that follow their motions, for each that a step has: what stands still in their way would be crushed.
 const DRIVEN: u32 = 16;
 
+/// The part of a gap at which friction has locked what a body that follows its motion pushes: the room has been halved twenty times, and can be
+/// halved ten times more.
+const LOCKED: f64 = 1.0 / 1_048_576.0;
+
 /// Why velocities are solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Occasion {
@@ -65,6 +69,8 @@ pub(crate) struct Step<'s> {
     heap: BinaryHeap<Reverse<Event>>,
     report: StepReport,
     holding: bool,
+    /// What friction has locked in the way of what follows its motion: it slides freely until the step ends.
+    slips: BTreeSet<usize>,
     replans: Replans,
     /// The end of flights that were planned anew.
     planned: Option<f64>,
@@ -106,6 +112,7 @@ impl<'s> Step<'s> {
             heap: BinaryHeap::new(),
             report: StepReport::default(),
             holding: false,
+            slips: BTreeSet::new(),
             replans: Replans::default(),
             planned: None,
             expected: Expected::default(),
@@ -182,6 +189,7 @@ impl<'s> Step<'s> {
                 self.release(event.time, &seeds);
                 self.report.events +=
                     go_on.iter().filter(|event| event.cause != Cause::Horizon).count() as u32;
+                self.let_slip(&go_on);
                 let is_cramped = go_on.iter().any(|event| self.is_cramped(event));
                 let occasion = if is_cramped { Occasion::Cramped } else { Occasion::Event };
                 self.resolve(event.time, seeds, occasion)?;
@@ -214,6 +222,20 @@ impl<'s> Step<'s> {
         let key = (event.bodies[0], event.bodies[1]);
         event.cause == Cause::Contact
             && self.sim.pairs.get(&key).is_some_and(|pair| pair.nearest.is_some_and(|d| d <= HIT * pair.gap))
+    }
+
+    /// What friction locks in the way of a body that follows its motion, until hardly any room is left, slides freely for the rest of the step: the
+    /// other one does not yield, and no velocities obey the law of friction.
+    fn let_slip(&mut self, events: &[Event]) {
+        for event in events.iter().filter(|event| event.cause == Cause::Contact) {
+            let key = (event.bodies[0], event.bodies[1]);
+            let is_locked =
+                self.sim.pairs.get(&key).is_some_and(|p| p.nearest.is_some_and(|d| d <= LOCKED * p.gap));
+            let follows = event.bodies.into_iter().any(|i| self.sim.bodies[i].is_driven());
+            if is_locked && follows {
+                self.slips.extend(event.bodies.into_iter().filter(|&i| self.sim.bodies[i].is_dynamic()));
+            }
+        }
     }
 
     /// All events whose brackets overlap the first one's, and the bodies of them.
