@@ -153,6 +153,9 @@ fn scenes_and_simulations_are_viewed() {
     assert!(!shown["marks"].as_array().unwrap().is_empty());
 
     let text = fs::read_to_string(&run).unwrap();
+    // Nor does a byte order mark matter.
+    let marked = folder.file("marked.jsonl", &format!("\u{feff}{text}"));
+    assert_eq!(data(&stdout(&d2m(&["view", &marked, "--out", "-"])))["bodies"], shown["bodies"]);
     let lines: Vec<&str> = text.lines().collect();
     for (fault, words) in [
         (lines[1..].join("\n"), "line 1: missing field"),

@@ -18,7 +18,7 @@ pub fn parse_json<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, IoError> {
     serde_json::from_slice(bytes).map_err(|error| {
         let line = bytes.split(|&byte| byte == b'\n').nth(error.line().saturating_sub(1)).unwrap_or_default();
         let word = word_at(&String::from_utf8_lossy(line), error.column());
-        IoError::Content { place: Place::default(), reason: format!("{error}{word}") }
+        IoError::Content { place: Place::default(), reason: format!("{}{word}", short(&error.to_string())) }
     })
 }
 
@@ -45,9 +45,21 @@ pub fn json_fault(error: &serde_json::Error, line: &str) -> String {
     let (text, column) = (error.to_string(), error.column());
     let what = text.split(" at line 1 column ").next().unwrap_or_default();
     if column == 0 {
-        what.to_owned()
+        short(what)
     } else {
-        format!("{what} (before column {column}){}", word_at(line, column))
+        format!("{} (before column {column}){}", short(what), word_at(line, column))
+    }
+}
+
+/// Characters at the start and at the end of what the parser says that are kept: it quotes a whole string.
+const KEPT: usize = 200;
+
+/// What the parser says, without the middle of what is long.
+fn short(text: &str) -> String {
+    let (start, end) = (text.char_indices().nth(KEPT), text.char_indices().nth_back(KEPT));
+    match (start, end) {
+        (Some((start, _)), Some((end, _))) if start < end => format!("{} … {}", &text[..start], &text[end..]),
+        _ => text.to_owned(),
     }
 }
 
@@ -152,6 +164,9 @@ mod tests {
         let error = serde_json::from_str::<Vec<f64>>(line).unwrap_err();
         assert_eq!(json_fault(&error, line), "invalid number (before column 6): \"-Infinity\"");
         assert!(fault("").contains("EOF"), "{}", fault(""));
+        let long = fault(&format!("[\"{}\"]", "\u{e9}".repeat(100_000)));
+        assert!(long.starts_with("invalid type: string") && long.contains(" at line 1 column "), "{long}");
+        assert!(long.chars().count() < 480, "{long}");
         assert!(fault("[\u{e9}\u{e9}").contains("column"), "{}", fault("[\u{e9}\u{e9}"));
     }
 }

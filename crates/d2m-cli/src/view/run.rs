@@ -167,7 +167,11 @@ impl Run {
         let bytes = unpacked(path)?;
         let text = String::from_utf8_lossy(&bytes);
         let place = |line: usize| format!("{}, line {}", path.display(), line + 1);
-        let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+        let mut lines = text
+            .trim_start_matches('\u{feff}')
+            .lines()
+            .enumerate()
+            .filter(|(_, line)| !line.trim().is_empty());
         let (line, first) = lines.next().unwrap_or_default();
         let Object(header) = serde_json::from_str::<Object<Header>>(first)
             .map_err(|error| Failure::at(place(line), json_fault(&error, first)))?;
