@@ -6,8 +6,8 @@ mod scenes;
 
 pub(crate) use at_rest::{CollideArguments, DistanceArguments, PosedArguments, ProximitiesArguments};
 pub(crate) use moving::{
-    ClearanceArguments, FurtherArguments, MotionArguments, SpansArguments, StartChoice, TocArguments,
-    VerifyArguments,
+    ClearanceArguments, FurtherArguments, MotionArguments, PairArguments, SpansArguments, StartChoice,
+    TocArguments, VerifyArguments,
 };
 pub(crate) use scenes::{RobotArguments, SceneArguments, SimulateArguments};
 
@@ -39,8 +39,10 @@ pub(crate) enum Command {
     #[command(mut_arg("b", |b| b.required(true)))]
     Toc(TocArguments),
     /// Least distance of two moving meshes, or of all bodies of a scene, over a window, with its time and points
+    #[command(mut_arg("a", |a| a.help(MESH_OR_SCENE_HELP)), mut_arg("b", |b| b.help(SECOND_HELP)))]
+    #[command(mut_arg("mode", |mode| mode.hide(true)), mut_arg("min_separation", |distance| distance.hide(true)))]
     #[command(after_help = "\
-The options and the motions are those of d2m toc. The least distance over the window is proven to lie within [lo, hi], and hi is attained by the
+Motions are written as d2m toc --help explains. The least distance over the window is proven to lie within [lo, hi], and hi is attained by the
 points at the time that is given; hi - lo is at most max(R * hi, 4 tolerances). Bodies that meet have the clearance [0, 0] and the time of contact.
 A budget or time limit that runs out leaves a wider interval that still holds: undecided.
 
@@ -54,8 +56,10 @@ Examples:
   d2m clearance docs/scenes/robot-arm.json --below 0.1")]
     Clearance(ClearanceArguments),
     /// Which times of a window are proven clear, and which are in contact, of two meshes or of a scene
+    #[command(mut_arg("a", |a| a.help(MESH_OR_SCENE_HELP)), mut_arg("b", |b| b.help(SECOND_HELP)))]
+    #[command(mut_arg("mode", |mode| mode.hide(true)))]
     #[command(after_help = "\
-The options and the motions are those of d2m toc. The spans are joined, in order, and cover the window. clear: proven further apart than
+Motions are written as d2m toc --help explains. The spans are joined, in order, and cover the window. clear: proven further apart than
 --min-separation at every time of the closed span. contact: begins and ends at the window's ends or within the resolution of a time at which the
 bodies are proven within --min-separation plus the tolerance; clear times shorter than the resolution may be inside. undecided: neither is proven.
 
@@ -132,6 +136,9 @@ pub(crate) struct ManArguments {
     pub(crate) command: Option<String>,
 }
 
+const MESH_OR_SCENE_HELP: &str =
+    "Mesh, as for d2m toc, or a scene (.json, as for d2m scene) in place of A and B";
+const SECOND_HELP: &str = "Second mesh; none beside a scene";
 const MESH_HELP: &str = "Mesh file (.obj, .stl, .ply, .off, .gltf, .glb, .dae, .3mf, a saved .d2mtree) or built-in shape such as shape:gear?triangles=5000";
 
 #[derive(Debug, Args)]
@@ -185,7 +192,7 @@ pub(crate) struct QueryArguments {
     #[arg(long, value_name = "DELTA", allow_hyphen_values = true)]
     pub(crate) tolerance: Option<String>,
     /// Most node tests of a query; when they are used up the answer is "undecided" [default: a cap of 2^30]
-    #[arg(long, value_name = "NODES")]
+    #[arg(long, value_name = "NODES", value_parser = whole_number, allow_hyphen_values = true)]
     pub(crate) budget: Option<u64>,
     /// Most seconds of a query; when they are used up the answer is "undecided"
     #[arg(long, value_name = "SECONDS", default_value = "60", allow_hyphen_values = true)]
@@ -222,6 +229,17 @@ pub(crate) struct SizeArguments {
     pub(crate) radius_b: Option<String>,
 }
 
+/// The size of one mesh.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct SizeArgument {
+    /// Scale of the mesh: one number, or three with commas between them
+    #[arg(long, value_name = "S", allow_hyphen_values = true, conflicts_with = "shapes")]
+    pub(crate) scale: Option<String>,
+    /// Unit of its numbers (mm, cm, m or in), which become meters [default: as the file states, or none]
+    #[arg(long, value_name = "UNIT", conflicts_with = "shapes")]
+    pub(crate) unit: Option<String>,
+}
+
 /// What counts as a body.
 #[derive(Debug, Clone, Copy, Args)]
 pub(crate) struct SolidArguments {
@@ -249,6 +267,17 @@ pub(crate) struct TreeArguments {
     /// File to write, with the extension .d2mtree; - for standard output
     #[arg(long, value_name = "A.d2mtree")]
     pub(crate) out: String,
+}
+
+/// A count, also written as 1e6.
+fn whole_number(text: &str) -> Result<u64, String> {
+    /// Doubles are whole numbers without gaps up to this one.
+    const EXACT: f64 = 9_007_199_254_740_992.0;
+    let written = text.parse::<f64>().ok().filter(|n| n.fract() == 0.0 && (0.0..=EXACT).contains(n));
+    text.parse()
+        .ok()
+        .or(written.map(|n| n as u64))
+        .ok_or_else(|| "not a whole number such as 1000000 or 1e6".to_owned())
 }
 
 /// How a query is answered.
@@ -302,11 +331,14 @@ Exit codes: 0 answered, 2 bad usage, 3 bad input.
 
 Examples:
   d2m info part.stl
+  d2m info part.stl --unit mm --ply part-in-meters.ply
   d2m info 'shape:gear?teeth=24' --glb gear.glb
   d2m info --shapes")]
 pub(crate) struct InfoArguments {
     #[arg(value_name = "A", help = MESH_HELP, required_unless_present = "shapes")]
     pub(crate) mesh: Option<String>,
+    #[command(flatten)]
+    pub(crate) size: SizeArgument,
     /// List the built-in shapes with their parameters
     #[arg(long, conflicts_with = "mesh")]
     pub(crate) shapes: bool,
@@ -314,13 +346,13 @@ pub(crate) struct InfoArguments {
     #[arg(long)]
     pub(crate) json: bool,
     /// Also write the mesh as an OBJ file
-    #[arg(long, value_name = "FILE", requires = "mesh")]
+    #[arg(long, value_name = "FILE.obj", requires = "mesh")]
     pub(crate) obj: Option<String>,
     /// Also write the mesh as a binary PLY file of doubles
-    #[arg(long, value_name = "FILE", requires = "mesh")]
+    #[arg(long, value_name = "FILE.ply", requires = "mesh")]
     pub(crate) ply: Option<String>,
     /// Also write the mesh as a binary glTF file, in single precision: for viewers
-    #[arg(long, value_name = "FILE", requires = "mesh")]
+    #[arg(long, value_name = "FILE.glb", requires = "mesh")]
     pub(crate) glb: Option<String>,
 }
 

@@ -2,6 +2,7 @@
 
 use crate::output::note;
 use serde_json::Value;
+use std::f64::consts::TAU;
 
 /// Lengths of quaternions differ from one by this much when their numbers were written with seven digits.
 pub(crate) const WRITTEN: f64 = 1e-6;
@@ -47,13 +48,21 @@ fn warn(place: &str, quaternions: &[[f64; 4]]) {
     }
 }
 
-/// Warns of the `q` of a motion's text.
+/// Warns of the `q` of a motion's text, and of an `rpy` that was probably meant in degrees.
 pub(crate) fn warn_of_text(place: &str, text: &str) {
     let parts = text.split(';').filter_map(|part| part.split_once('='));
     let quaternion = |value: &str| {
         let numbers: Vec<f64> = value.split(',').filter_map(|word| word.trim().parse().ok()).collect();
         numbers.try_into().ok()
     };
+    for (_, value) in parts.clone().filter(|(key, _)| key.trim() == "rpy") {
+        let most = value.split(',').filter_map(|word| word.trim().parse::<f64>().ok()).map(f64::abs);
+        if most.fold(0.0, f64::max) > TAU {
+            note(&format!(
+                "d2m: warning: {place}: rpy = {value} is in radians, and more than a whole turn; degrees have deg behind the number"
+            ));
+        }
+    }
     let of_turns = parts.filter(|(key, _)| key.trim() == "q");
     warn(place, &of_turns.filter_map(|(_, value)| quaternion(value)).collect::<Vec<_>>());
 }

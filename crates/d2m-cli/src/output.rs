@@ -5,6 +5,7 @@ pub(crate) use d2m_io::short_number as short;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use indicatif::{ProgressBar, ProgressStyle};
+use std::ffi::OsStr;
 use std::fs;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -100,6 +101,30 @@ impl Output {
         Ok(self)
     }
 
+    /// Refuses a name that says another kind of file than the one that the option writes: nobody could read it by that name.
+    pub(crate) fn called(self, option: &str, extensions: &[&str]) -> Result<Self, Failure> {
+        if let Self::File(path) = &self
+            && let Some(extension) = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase)
+            && !extensions.contains(&extension.as_str())
+            && KINDS.contains(&extension.as_str())
+        {
+            let reason = format!("{option} writes a file of another kind: expected .{}", extensions[0]);
+            return Err(Failure::at(path.display(), reason));
+        }
+        Ok(self)
+    }
+
+    /// Where its bytes go, whatever it is called.
+    fn target(&self) -> PathBuf {
+        match self {
+            Self::Stdout => PathBuf::from("-"),
+            Self::File(path) => {
+                let folder = folder_of(path).canonicalize().unwrap_or_default();
+                path.canonicalize().unwrap_or_else(|_| folder.join(path.file_name().unwrap_or_default()))
+            }
+        }
+    }
+
     /// Writes everything at once: to a temporary file beside the target, which then replaces it.
     pub(crate) fn write(&self, contents: &str) -> Result<(), Failure> {
         self.write_bytes(contents.as_bytes())
@@ -143,6 +168,24 @@ impl core::fmt::Display for Output {
             Self::File(path) => write!(f, "{}", path.display()),
         }
     }
+}
+
+/// Extensions by which files are known: one of another kind of file is a slip.
+const KINDS: [&str; 14] = [
+    "obj", "stl", "ply", "off", "gltf", "glb", "dae", "3mf", "d2mtree", "html", "htm", "png", "json", "jsonl",
+];
+
+/// Refuses two results in one file, of which the first would be lost.
+pub(crate) fn require_distinct<'a>(outputs: impl IntoIterator<Item = &'a Output>) -> Result<(), Failure> {
+    let mut targets = Vec::new();
+    for output in outputs {
+        let target = output.target();
+        if targets.contains(&target) {
+            return Err(Failure::at(output, "two results would be written there"));
+        }
+        targets.push(target);
+    }
+    Ok(())
 }
 
 /// Results as they come: a run that is ended from outside leaves the whole lines written until then.

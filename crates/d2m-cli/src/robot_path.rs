@@ -1,7 +1,7 @@
 //! Files of paths: what is no number in them is named by point and joint, not by its column.
 
 use crate::failure::{Failure, parse_json};
-use crate::load::read;
+use crate::load::{named, read};
 use crate::simulation::short;
 use d2m::motion::serde_object::Object;
 use d2m_robot::Trajectory;
@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// Reads a path, which makes sense by itself: what joints a robot has is not known here.
 pub(crate) fn read_path(file: &Path) -> Result<Trajectory, Failure> {
-    let place = file.display().to_string();
+    let place = named(file);
     let bytes = read(file)?;
     let Object(path) = parse_json::<Object<Trajectory>>(&place, &bytes).map_err(|failure| {
         number_fault(&String::from_utf8_lossy(&bytes)).map_or(failure, |reason| Failure::at(&place, reason))

@@ -1,6 +1,6 @@
 //! Sizes that people mix up: the scale and unit of the meshes, and what is echoed of them.
 
-use crate::arguments::SizeArguments;
+use crate::arguments::{SizeArgument, SizeArguments};
 use crate::failure::Failure;
 use crate::load::{Loaded, load_with};
 use crate::output::digits;
@@ -10,19 +10,25 @@ use glam::DVec3;
 
 /// Loads two meshes in the sizes that the options state.
 pub(crate) fn load_both(a: &str, b: &str, sizes: &SizeArguments) -> Result<[Loaded; 2], Failure> {
-    let options_a = read_options("a", sizes.scale_a.as_deref(), sizes.unit_a.as_deref())?;
-    let options_b = read_options("b", sizes.scale_b.as_deref(), sizes.unit_b.as_deref())?;
+    let options_a = read_options("-a", sizes.scale_a.as_deref(), sizes.unit_a.as_deref())?;
+    let options_b = read_options("-b", sizes.scale_b.as_deref(), sizes.unit_b.as_deref())?;
     Ok([load_with(a, &options_a)?, load_with(b, &options_b)?])
 }
 
+/// Loads one mesh in the size that `--scale` and `--unit` state.
+pub(crate) fn load_one(mesh: &str, size: &SizeArgument) -> Result<Loaded, Failure> {
+    load_with(mesh, &read_options("", size.scale.as_deref(), size.unit.as_deref())?)
+}
+
+/// The options are `--scale` and `--unit` with the letter of the body behind, where there are two.
 fn read_options(body: &str, scale: Option<&str>, unit: Option<&str>) -> Result<ReadOptions, Failure> {
     let mut options = ReadOptions::new();
     if let Some(text) = unit {
-        let unit: Unit = text.parse().map_err(|error| Failure::at(format!("--unit-{body}"), error))?;
+        let unit: Unit = text.parse().map_err(|error| Failure::at(format!("--unit{body}"), error))?;
         options = options.with_unit(unit);
     }
     if let Some(text) = scale {
-        let scale = parse_scale(text).map_err(|reason| Failure::at(format!("--scale-{body}"), reason))?;
+        let scale = parse_scale(text).map_err(|reason| Failure::at(format!("--scale{body}"), reason))?;
         options = options.with_scale(scale);
     }
     Ok(options)

@@ -1,7 +1,7 @@
 //! Trials: 26 numbers a line, the motions of A and of B, or a JSON object a line with motions of any form.
 
 use crate::failure::{Failure, json_fault};
-use crate::load::read;
+use crate::load::{named, read};
 use crate::motion::require_window;
 use crate::orientation::{WRITTEN, has_odd_length};
 use d2m::bvh::{MAX_COORDINATE, Window};
@@ -49,7 +49,7 @@ const FIELDS: [&str; 13] = ["qw", "qx", "qy", "qz", "x1", "x2", "x3", "v1", "v2"
 pub(crate) fn load(path: &Path) -> Result<Vec<Trial>, Failure> {
     let bytes = read(path)?;
     let text = String::from_utf8_lossy(&bytes);
-    parse(&path.display().to_string(), text.trim_start_matches('\u{feff}'))
+    parse(&named(path), text.trim_start_matches('\u{feff}'))
 }
 
 fn parse(place: &str, text: &str) -> Result<Vec<Trial>, Failure> {

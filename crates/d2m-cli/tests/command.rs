@@ -87,6 +87,9 @@ fn threads_do_not_change_answers() {
 
 #[test]
 fn a_budget_is_answered_honestly() {
+    let refused = d2m(&["toc", UNIT_BOX, UNIT_BOX, "--budget", "-1"]);
+    assert!(stderr(&refused).contains("not a whole number such as 1000000 or 1e6"), "{}", stderr(&refused));
+    assert!(stdout(&d2m(&["toc", UNIT_BOX, UNIT_BOX, "--budget", "1e6"])).starts_with("CONTACT"));
     let folder = Folder::new("budget");
     let trials = folder.file("trials.csv", "1,0,0,0,-3,0,0,4,0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0\n");
     let output =
@@ -214,7 +217,7 @@ fn trials_and_results_may_be_piped() {
     let output = shell::d2m_with_input(&arguments, line.replace("-3", "-x").as_bytes());
     assert_eq!(output.status.code(), Some(3));
     assert!(
-        stderr(&output).contains("line 1: ") && stderr(&output).contains("column"),
+        stderr(&output).contains("standard input, line 1: ") && stderr(&output).contains("column"),
         "{}",
         stderr(&output)
     );
@@ -237,7 +240,9 @@ fn bad_usage_exits_with_2() {
         &["batch", UNIT_BOX, UNIT_BOX, "--trials", "t.csv", "--out", "-", "--threads", "0"],
         &["toc", UNIT_BOX, UNIT_BOX, "--mode", "fast"],
         &["toc", UNIT_BOX, UNIT_BOX, "--no-such-option"],
+        &["toc", UNIT_BOX, UNIT_BOX, "--budget", "1.5"],
         &["info"],
+        &["info", "--shapes", "--unit", "mm"],
         &["frobnicate"],
     ] {
         assert_eq!(d2m(arguments).status.code(), Some(2), "{arguments:?}");

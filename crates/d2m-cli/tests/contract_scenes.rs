@@ -211,7 +211,11 @@ fn options_of_other_questions_are_refused() {
         [("clearance", "--start=leave"), ("spans", "--start=leave"), ("spans", "--clearance")]
     {
         let (name, _) = option.split_once('=').unwrap_or((option, ""));
-        refused(&[command, CUBE, CUBE, option], &[name, &format!("d2m {command} has no such option")]);
+        // Neither does the help show it.
+        let (run, help) = (d2m(&[command, CUBE, CUBE, option]), d2m(&[command, "--help"]));
+        assert_eq!(run.status.code(), Some(2), "{}", stderr(&run));
+        assert!(stderr(&run).contains(&format!("unexpected argument '{name}'")), "{}", stderr(&run));
+        assert!(!String::from_utf8_lossy(&help.stdout).contains(&format!("{name} ")), "{command} {name}");
     }
     // What turns more than once is warned of by all of them.
     for command in ["toc", "clearance", "spans"] {

@@ -147,6 +147,11 @@ fn inputs_and_read_only_files_are_not_replaced() {
         &["motion.json", "input"],
     );
     refused(&[&batch[..], &[""]].concat(), &["empty"]);
+    // Before hours of work, not after them.
+    refused(
+        &[&batch[..], &["new.csv", "--verify", "2"]].concat(),
+        &["--verify: 2 is not a share from 0 to 1"],
+    );
     let precious = folder.file("precious.csv", "1,2,3\n");
     let mut permissions = fs::metadata(&precious).unwrap().permissions();
     permissions.set_readonly(true);
@@ -154,6 +159,18 @@ fn inputs_and_read_only_files_are_not_replaced() {
     refused(&[&batch[..], &[&precious]].concat(), &["precious.csv", "read-only"]);
     assert_eq!(fs::read_to_string(&precious).unwrap(), "1,2,3\n");
     assert_eq!(fs::read_to_string(&trials).unwrap(), TRIALS);
+    // Nor is one of two results lost in the other, or written where its name says another kind of file.
+    let (same, mesh) = (folder.path("same.html"), folder.path("mesh.stl"));
+    let other = format!("{}/../protected/same.html", folder.path(""));
+    refused(&["info", UNIT_BOX, "--obj", "-", "--ply", "-"], &["standard output: two results"]);
+    refused(&["view", UNIT_BOX, UNIT_BOX, "--out", &same, "--png", &same], &["same.html", "--png writes"]);
+    let same = same.replace("html", "x");
+    let other = other.replace("html", "x");
+    refused(&["view", UNIT_BOX, UNIT_BOX, "--out", &same, "--png", &other], &["same.x", "two results"]);
+    refused(&["info", UNIT_BOX, "--obj", &mesh], &["mesh.stl", "--obj writes", "expected .obj"]);
+    refused(&["toc", UNIT_BOX, UNIT_BOX, "--obj", &mesh], &["mesh.stl", "--obj writes"]);
+    refused(&["view", UNIT_BOX, UNIT_BOX, "--out", &folder.path("view.png")], &["view.png", "--out writes"]);
+    assert_eq!(folder.names(), ["motion.json", "precious.csv", "trials.csv"]);
     // Replacing an old result is what a second run does.
     let out = folder.file("old.csv", "old");
     assert_eq!(d2m(&[&batch[..], &[&out]].concat()).status.code(), Some(0));

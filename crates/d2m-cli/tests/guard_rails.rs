@@ -47,6 +47,13 @@ fn units_and_scales_are_applied() {
             "sizes       A is 3.464 across, moves 4 and turns 0° · B is 3.464 across, moves 0 and turns 0°"
         );
     }
+    for size in ["--unit=mm", "--scale=0.001"] {
+        let meters = folder.path("m.ply");
+        let info = stdout(&d2m(&["info", &millimeters, size, "--ply", &meters]));
+        assert!(info.contains("volume      8.000000"), "{info}");
+        assert!(stdout(&d2m(&["info", &meters])).contains("volume      8.000000"));
+    }
+    refused(&["info", CUBE, "--unit", "furlong"], &["--unit: \"furlong\" is not a unit"]);
     let inches = d2m(&["distance", CUBE, CUBE, "--unit-b=in", "--pose-a=x=3,0,0", "--json"]);
     assert!(stdout(&inches).contains("\"distance\":1.9746"), "{}", stdout(&inches));
     let tree = folder.path("mm.d2mtree");
@@ -94,6 +101,7 @@ fn doubtful_turns_are_warned_of() {
     for (motion, expected) in [
         ("q=0,0,0,1", "--motion-a: q = 0,0,0,1 is half a turn about z: w comes first"),
         ("q=0.9,0,0,0", "--motion-a: q = [0.9, 0.0, 0.0, 0.0] has the length 0.9, not 1; it is normalized"),
+        ("rpy=0,90,45deg", "--motion-a: rpy = 0,90,45deg is in radians, and more than a whole turn"),
         ("w=0,0,90", "--motion-a: the body turns 14.32 times in the window"),
         (&format!("@{file}"), "m.json: q = [0.0, 0.0, 0.0, 2.0] has the length 2"),
         (&format!("@{file}"), "m.json: q = 0,0,0,1 is half a turn"),
@@ -106,7 +114,7 @@ fn doubtful_turns_are_warned_of() {
             stderr(&run)
         );
     }
-    for quiet in ["q=0.70710678,0,0,0.70710678", "w=0,0,6.28", "rpy=0,0,180deg", ""] {
+    for quiet in ["q=0.70710678,0,0,0.70710678", "w=0,0,6.28", "rpy=0,0,180deg", "rpy=0,6.28,-3", ""] {
         let run = d2m(&["toc", CUBE, CUBE, "--motion-a", quiet]);
         assert!(stderr(&run).is_empty(), "{quiet}: {}", stderr(&run));
     }
@@ -155,6 +163,7 @@ fn hints_where_people_trip() {
     let motion = folder.file("m1.json", r#"{"x": [1, 0, 0]}"#);
     refused(&["toc", CUBE, CUBE, "--motion-a", &motion], &["--motion-a", &format!("in front: @{motion}")]);
     refused(&["distance", CUBE, CUBE, "--pose-a", "m1.json"], &["--pose-a", "@m1.json"]);
+    refused(&["info", "-"], &["a mesh is read from a file"]);
     refused(&["info", "torus-knot"], &["is the built-in shape:torus-knot meant?"]);
     refused(&["toc", "gear?teeth=12", CUBE], &["shape:gear?teeth=12"]);
     let simulation = folder

@@ -32,6 +32,18 @@ Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact,
 Example:
   d2m toc shape:gear 'shape:torus-knot?triangles=70000' --motion-a 'x=-2,0,0;v=3,0,0;w=0,0,5' --motion-b 'w=0,1,0'")]
 pub(crate) struct TocArguments {
+    #[command(flatten)]
+    pub(crate) pair: PairArguments,
+    /// Also write both meshes, posed at the contact, as an OBJ file
+    #[arg(long, value_name = "FILE.obj")]
+    pub(crate) obj: Option<String>,
+    #[command(flatten)]
+    pub(crate) further: FurtherArguments,
+}
+
+/// Two moving meshes, how they are asked about and how the answer is given: what all questions about them share.
+#[derive(Debug, Args)]
+pub(crate) struct PairArguments {
     #[arg(value_name = "A", help = MESH_HELP)]
     pub(crate) a: String,
     #[arg(value_name = "B", help = MESH_HELP)]
@@ -49,11 +61,6 @@ pub(crate) struct TocArguments {
     /// Exit with 10 on contact, 11 if separated, 12 if undecided
     #[arg(long)]
     pub(crate) exit_status: bool,
-    /// Also write both meshes, posed at the contact, as an OBJ file
-    #[arg(long, value_name = "FILE")]
-    pub(crate) obj: Option<String>,
-    #[command(flatten)]
-    pub(crate) further: FurtherArguments,
 }
 
 /// How two bodies move, and when.
@@ -115,7 +122,7 @@ pub(crate) enum StartChoice {
 #[derive(Debug, Args)]
 pub(crate) struct SpansArguments {
     #[command(flatten)]
-    pub(crate) toc: TocArguments,
+    pub(crate) pair: PairArguments,
     /// Clear times shorter than this may be inside a contact span [default: 1e-6 of the window]
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub(crate) resolution: Option<String>,
@@ -124,7 +131,7 @@ pub(crate) struct SpansArguments {
 #[derive(Debug, Args)]
 pub(crate) struct ClearanceArguments {
     #[command(flatten)]
-    pub(crate) toc: TocArguments,
+    pub(crate) pair: PairArguments,
     /// The enclosure is at most this part of the distance wide (or four tolerances)
     #[arg(long, value_name = "R", default_value = "1e-6", allow_hyphen_values = true)]
     pub(crate) accuracy: String,

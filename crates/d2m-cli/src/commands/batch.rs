@@ -3,6 +3,7 @@
 use crate::arguments::BatchArguments;
 use crate::engine::{Answer, Pair, number, threads};
 use crate::failure::Failure;
+use crate::load::named;
 use crate::outcome::Outcome;
 use crate::output::{Output, note, progress_bar};
 use crate::partial::Partial;
@@ -26,6 +27,8 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
             "standard input cannot be read again: name a file with --trials",
         ));
     }
+    let share = |text| number("--verify", text, "a share from 0 to 1", |share| (0.0..=1.0).contains(&share));
+    let share = arguments.verify.as_deref().map(share).transpose()?;
     let wanted = arguments.further;
     let trials = trials::load(&arguments.trials)?;
     let [a, b] = load_both(&arguments.a, &arguments.b, &arguments.query.sizes)?;
@@ -41,7 +44,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
     let answer = |(index, trial): (usize, &Trial)| {
         let answer = pair.answer_trial(trial, wanted);
         bar.inc(1);
-        let place = || format!("{}, line {} (trial {index})", arguments.trials.display(), trial.line);
+        let place = || format!("{}, line {} (trial {index})", named(&arguments.trials), trial.line);
         answer.map_err(|failure| Failure::at(place(), failure))
     };
     let pool = threads(arguments.threads.into())?;
@@ -90,7 +93,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
         report::duration(elapsed)
     ));
     warn_of_orientations(arguments, &trials);
-    match &arguments.verify {
+    match share {
         Some(share) => prove(share, &pair, &trials[known..], &answers),
         None => Ok(Outcome::Answered),
     }
@@ -106,7 +109,7 @@ fn warn_of_orientations(arguments: &BatchArguments, trials: &[Trial]) {
         if let Some(first) = odd.next() {
             note(&format!(
                 "d2m: warning: {}: {} trials have {what}, the first in line {}",
-                arguments.trials.display(),
+                named(&arguments.trials),
                 1 + odd.count(),
                 first.line
             ));
@@ -122,8 +125,7 @@ fn warn_of_orientations(arguments: &BatchArguments, trials: &[Trial]) {
 }
 
 /// Proves a share of the answers again, evenly spread.
-fn prove(share: &str, pair: &Pair, trials: &[Trial], answers: &[Answer]) -> Result<Outcome, Failure> {
-    let share = number("--verify", share, "a share from 0 to 1", |share| (0.0..=1.0).contains(&share))?;
+fn prove(share: f64, pair: &Pair, trials: &[Trial], answers: &[Answer]) -> Result<Outcome, Failure> {
     let verifier = PairVerifier::new(pair)?;
     let is_chosen = |index: usize| ((index + 1) as f64 * share).floor() > (index as f64 * share).floor();
     let (mut verified, mut count, mut outcome) = (0, 0, Outcome::Answered);

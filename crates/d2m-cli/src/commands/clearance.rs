@@ -1,7 +1,7 @@
 //! `d2m clearance`: how near do two moving meshes come?
 
 use super::scene_question::{SceneQuestion, is_scene, sizes_line_of};
-use super::toc::{MovingPair, prove, read, refuse, with_proof};
+use super::toc::{MovingPair, prove, read, with_proof};
 use crate::arguments::ClearanceArguments;
 use crate::engine::{ClearanceAnswer, MIN_SEPARATION, Pair, number};
 use crate::failure::Failure;
@@ -21,36 +21,38 @@ use std::fmt::Write;
 /// Runs the command.
 pub(crate) fn run(arguments: &ClearanceArguments) -> Result<Outcome, Failure> {
     let accuracy = number("--accuracy", &arguments.accuracy, "a positive finite number", |r| r > 0.0)?;
-    let toc = &arguments.toc;
-    refuse(toc, "clearance")?;
-    if toc.query.min_separation.is_some() {
-        return Err(Failure::at("--min-separation", "d2m clearance has no such option"));
+    let asked = &arguments.pair;
+    if asked.query.min_separation.is_some() {
+        return Err(Failure::at(
+            "--min-separation",
+            "d2m clearance has no such option: compare the distance that it answers",
+        ));
     }
-    if is_scene(toc) {
+    if is_scene(asked) {
         return run_scene(arguments, accuracy);
     }
     if arguments.below.is_some() {
         return Err(Failure::at("--below", "it is for scenes: two meshes are one pair"));
     }
-    let MovingPair { pair, motion_a, motion_b, window, travels, .. } = read(toc)?;
+    let MovingPair { pair, motion_a, motion_b, window, travels } = read(asked)?;
     let answer = pair.clearance([&motion_a, &motion_b], window, Some(accuracy))?;
     let promise = Promise::Clearance { found: answer.found, accuracy: Some(accuracy) };
-    let proof = prove(toc, &pair, [&motion_a, &motion_b], window, &[promise])?;
-    print_answer(&if toc.json {
-        with_proof(toc, to_json(&pair, window, &answer), proof)?
+    let proof = prove(asked, &pair, [&motion_a, &motion_b], window, &[promise])?;
+    print_answer(&if asked.json {
+        with_proof(asked, to_json(&pair, window, &answer), proof)?
     } else {
-        with_proof(toc, to_text(&pair, window, &answer), proof)? + &sizes_line(pair.sizes(), Some(travels))
+        with_proof(asked, to_text(&pair, window, &answer), proof)? + &sizes_line(pair.sizes(), Some(travels))
     })?;
-    Ok(Outcome::from(answer.found.status).reported(toc.exit_status))
+    Ok(Outcome::from(answer.found.status).reported(asked.exit_status))
 }
 
 /// The nearest pair of a scene, and all that are near.
 fn run_scene(arguments: &ClearanceArguments, accuracy: f64) -> Result<Outcome, Failure> {
-    let toc = &arguments.toc;
+    let asked = &arguments.pair;
     let below = arguments.below.as_ref().map(|text| number("--below", text, MIN_SEPARATION, |d| d >= 0.0));
     let below = below.transpose()?;
-    let SceneQuestion { scene, world, options } = SceneQuestion::read(toc)?;
-    let named = |error: WorldError| Failure::at(&toc.a, scene.describe(error));
+    let SceneQuestion { scene, world, options } = SceneQuestion::read(asked)?;
+    let named = |error: WorldError| Failure::at(&asked.a, scene.describe(error));
     let mut wanted = ClearanceOptions::default().with_accuracy(accuracy).with_budget(options.budget);
     wanted.tolerance = options.tolerance;
     let nearest = world.nearest_pair(scene.window, &wanted).map_err(named)?;
@@ -62,13 +64,13 @@ fn run_scene(arguments: &ClearanceArguments, accuracy: f64) -> Result<Outcome, F
         (object["a"], object["b"]) = (json!(name(found.a)), json!(name(found.b)));
         object
     };
-    let proof = if toc.verify {
+    let proof = if asked.verify {
         Some(prove_scene(&scene, &wanted, nearest.as_ref(), below.zip(near.as_deref()))?)
     } else {
         None
     };
     let status = nearest.as_ref().map_or(ClearanceStatus::Clear, |found| found.clearance.status);
-    print_answer(&if toc.json {
+    print_answer(&if asked.json {
         // Of a scene without pairs nothing comes near.
         let none = json!({ "status": "clear", "clearance": null, "a": null, "b": null });
         let mut answer = nearest.as_ref().map_or(none, object);
@@ -107,7 +109,7 @@ fn run_scene(arguments: &ClearanceArguments, accuracy: f64) -> Result<Outcome, F
         }
         text + &sizes_line_of(&scene)
     })?;
-    Ok(Outcome::from(status).reported(toc.exit_status))
+    Ok(Outcome::from(status).reported(asked.exit_status))
 }
 
 /// Proves the answer about a scene again: the clearances that it states, and that all other pairs stay at least as far apart as the

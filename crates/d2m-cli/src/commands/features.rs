@@ -3,7 +3,7 @@
 use crate::arguments::FeaturesArguments;
 use crate::engine::{MIN_SEPARATION, TOLERANCE, number};
 use crate::failure::{Failure, json_fault};
-use crate::load::read;
+use crate::load::{named, read};
 use crate::output::Output;
 use crate::report::microseconds;
 use d2m::feature::{self, ContactOptions, FirstContact, PairMotion, StraightPaths};
@@ -159,10 +159,10 @@ fn read_cases(path: &Path) -> Result<Vec<Case>, Failure> {
         .filter(|(_, line)| !line.trim().is_empty())
         .map(|(index, line)| {
             read_case(line)
-                .map_err(|reason| Failure::Input(format!("{}, line {}: {reason}", path.display(), index + 1)))
+                .map_err(|reason| Failure::Input(format!("{}, line {}: {reason}", named(path), index + 1)))
         })
         .collect::<Result<_, _>>()?;
-    if cases.is_empty() { Err(Failure::at(path.display(), "there are no cases")) } else { Ok(cases) }
+    if cases.is_empty() { Err(Failure::at(named(path), "there are no cases")) } else { Ok(cases) }
 }
 
 fn read_case(line: &str) -> Result<Case, String> {

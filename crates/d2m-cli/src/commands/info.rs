@@ -2,9 +2,10 @@
 
 use crate::arguments::InfoArguments;
 use crate::failure::Failure;
-use crate::load::{Loaded, load};
+use crate::load::Loaded;
 use crate::output::short;
-use crate::output::{Output, print};
+use crate::output::{Output, print, require_distinct};
+use crate::sizes::load_one;
 use d2m::bvh::{EnclosingSphere, MeshParts, Validation};
 use d2m::shapes::{COMMON, SHAPES};
 use d2m_io::{Precision, UpAxis, glb_bytes, obj_text, ply_bytes};
@@ -17,12 +18,16 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     let Some(source) = &arguments.mesh else {
         return print(&if arguments.json { shapes_json() } else { shapes_text() });
     };
-    let output = |path: &Option<String>| match path {
-        Some(path) => Output::new(path)?.spare([Path::new(source)]).map(Some),
+    let output = |path: &Option<String>, option: &str| match path {
+        Some(path) => {
+            Output::new(path)?.spare([Path::new(source)])?.called(&format!("--{option}"), &[option]).map(Some)
+        }
         None => Ok(None),
     };
-    let [obj, ply, glb] = [output(&arguments.obj)?, output(&arguments.ply)?, output(&arguments.glb)?];
-    let body = load(source)?;
+    let [obj, ply, glb] =
+        [output(&arguments.obj, "obj")?, output(&arguments.ply, "ply")?, output(&arguments.glb, "glb")?];
+    require_distinct([&obj, &ply, &glb].into_iter().flatten())?;
+    let body = load_one(source, &arguments.size)?;
     // A large mesh takes a second for each.
     let (validation, parts) = rayon::join(|| Validation::new(body.mesh()), || MeshParts::new(body.mesh()));
     if let Some(obj) = obj {

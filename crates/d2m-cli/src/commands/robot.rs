@@ -4,6 +4,7 @@ use super::robot_proof::{Proof, prove};
 use crate::arguments::RobotArguments;
 use crate::engine::{number, threads, time_limit};
 use crate::failure::Failure;
+use crate::load::named;
 use crate::outcome::Outcome;
 use crate::output::{Output, digits, note, print, short};
 use crate::report::{evidence_sentence, vector};
@@ -24,7 +25,7 @@ use std::path::PathBuf;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
-    let place = arguments.path.display().to_string();
+    let place = named(&arguments.path);
     // Before the meshes, which take longer.
     let path = read_path(&arguments.path)?;
     let [start, end] = path.times().unwrap_or_default();
@@ -36,7 +37,8 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
         if page == "-" {
             return Err(Failure::at("--view", "standard output has the answer: a file is needed"));
         }
-        Output::new(page)?.spare(inputs.into_iter().flatten().map(PathBuf::as_path))
+        let inputs = inputs.into_iter().flatten().map(PathBuf::as_path);
+        Output::new(page)?.spare(inputs)?.called("--view", &["html", "htm"])
     });
     let page = page.transpose()?;
     let file = arguments.scene.as_deref().map(RobotSceneFile::read).transpose()?;

@@ -4,6 +4,7 @@ use super::scene_question::sizes_line_of;
 use crate::arguments::SceneArguments;
 use crate::engine::{threads, time_limit};
 use crate::failure::Failure;
+use crate::load::named;
 use crate::outcome::Outcome;
 use crate::output::{print_answer, progress_bar, short};
 use crate::report::{feature_field, start_in_json, start_word, vector};
@@ -53,7 +54,7 @@ fn at_start(scene: &Scene, bodies: [usize; 2], options: QueryOptions) -> StartSt
 /// Runs the command.
 pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
     let mut scene = Scene::read(&arguments.scene)?;
-    scene.warn_of_sizes(&arguments.scene.display().to_string());
+    scene.warn_of_sizes(&named(&arguments.scene));
     if let Some(start) = arguments.start {
         scene = scene.with_start(start.into());
     }
@@ -62,7 +63,7 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
         options = options.with_budget(time_limit(text)?);
     }
     let mut world = scene.world(options);
-    let named = |error: WorldError| Failure::at(arguments.scene.display(), scene.describe(error));
+    let named = |error: WorldError| Failure::at(named(&arguments.scene), scene.describe(error));
     let pool = threads(arguments.threads.map_or(0, usize::from))?;
     let bar = progress_bar(0, "pairs");
     let progress = |done: usize, all: usize| {

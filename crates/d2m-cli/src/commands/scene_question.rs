@@ -1,6 +1,6 @@
 //! A scene in place of two meshes, as `d2m clearance` and `d2m spans` take it.
 
-use crate::arguments::{Method, TocArguments};
+use crate::arguments::{Method, PairArguments};
 use crate::engine::options_of;
 use crate::failure::Failure;
 use crate::scene::Scene;
@@ -19,14 +19,14 @@ pub(super) struct SceneQuestion {
 }
 
 /// Is a scene given in place of two meshes?
-pub(super) fn is_scene(arguments: &TocArguments) -> bool {
+pub(super) fn is_scene(arguments: &PairArguments) -> bool {
     let is_json = Path::new(&arguments.a).extension().is_some_and(|end| end.eq_ignore_ascii_case("json"));
     is_json && arguments.b.is_none()
 }
 
 impl SceneQuestion {
     /// Reads the scene. What it says itself is no option.
-    pub(super) fn read(arguments: &TocArguments) -> Result<Self, Failure> {
+    pub(super) fn read(arguments: &PairArguments) -> Result<Self, Failure> {
         let query = &arguments.query;
         let given = [
             ("--motion-a", !arguments.motions.motion_a.is_empty()),

@@ -3,6 +3,7 @@
 use crate::arguments::SimulateArguments;
 use crate::engine::{number, threads};
 use crate::failure::Failure;
+use crate::load::named;
 use crate::output::{Output, Stream, note, progress_bar};
 use crate::report::duration;
 use crate::simulation::{Line, SimulatedScene, Thinner, are_told_apart, header, read_scene, segment};
@@ -27,7 +28,7 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<(), Failure> {
     }
     warn_of_gap(&scene);
     let pool = threads(arguments.threads.or(scene.threads).unwrap_or(1).into())?;
-    let name = arguments.scene.display().to_string();
+    let name = named(&arguments.scene);
     let ended = pool.install(|| simulate(scene, &name, &out, every.map(Thinner::new)))?;
     if let Some(error) = ended.early {
         Err(Failure::at(name, format!("{error}; {}", ended.written)))
@@ -49,7 +50,7 @@ fn warn_of_gap(scene: &SimulatedScene) {
         let name = scene.simulation.name(smallest);
         let part = 100.0 * gap / radius(smallest);
         note(&format!(
-            "warning: the gap of {gap:?} is {part:.0} % of the radius of body {name}: give a smaller one"
+            "d2m: warning: the gap of {gap:?} is {part:.0} % of the radius of body {name}: give a smaller one"
         ));
     }
 }

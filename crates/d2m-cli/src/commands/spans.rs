@@ -1,8 +1,8 @@
 //! `d2m spans`: which times of a window are proven clear?
 
 use super::scene_question::{SceneQuestion, is_scene, sizes_line_of};
-use super::toc::{MovingPair, prove, read, refuse, with_proof};
-use crate::arguments::{SpansArguments, TocArguments};
+use super::toc::{MovingPair, prove, read, with_proof};
+use crate::arguments::{PairArguments, SpansArguments};
 use crate::engine::number;
 use crate::failure::Failure;
 use crate::outcome::Outcome;
@@ -21,28 +21,27 @@ const RESOLUTION: f64 = 1e-6;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &SpansArguments) -> Result<Outcome, Failure> {
-    let toc = &arguments.toc;
-    refuse(toc, "spans")?;
+    let asked = &arguments.pair;
     let given = arguments.resolution.as_deref();
     let resolution = given.map(|text| number("--resolution", text, "a positive finite time", |t| t > 0.0));
     let resolution = resolution.transpose()?;
-    if is_scene(toc) {
-        return run_scene(toc, resolution);
+    if is_scene(asked) {
+        return run_scene(asked, resolution);
     }
-    let MovingPair { pair, motion_a, motion_b, window, travels, .. } = read(toc)?;
+    let MovingPair { pair, motion_a, motion_b, window, travels } = read(asked)?;
     let spans = pair.spans([&motion_a, &motion_b], window, resolution)?;
     let resolution = resolution.unwrap_or(RESOLUTION * window.length());
     let ends = [window.start(), window.end()];
     let (text, json) = (to_text(&spans), spans.iter().map(to_json).collect::<Vec<Value>>());
     let promise = Promise::Spans { spans: spans.clone(), resolution };
-    let proof = prove(toc, &pair, [&motion_a, &motion_b], window, &[promise])?;
-    print_answer(&if toc.json {
+    let proof = prove(asked, &pair, [&motion_a, &motion_b], window, &[promise])?;
+    print_answer(&if asked.json {
         let json = json!({ "window": ends, "resolution": resolution, "spans": json });
-        with_proof(toc, format!("{json}\n"), proof)?
+        with_proof(asked, format!("{json}\n"), proof)?
     } else {
-        with_proof(toc, text, proof)? + &sizes_line(pair.sizes(), Some(travels))
+        with_proof(asked, text, proof)? + &sizes_line(pair.sizes(), Some(travels))
     })?;
-    Ok(outcome_of(&spans).reported(toc.exit_status))
+    Ok(outcome_of(&spans).reported(asked.exit_status))
 }
 
 fn outcome_of(spans: &[ContactSpan]) -> Outcome {
@@ -55,16 +54,16 @@ fn outcome_of(spans: &[ContactSpan]) -> Outcome {
 }
 
 /// The spans of all pairs of a scene together, and of each that is not clear all the time.
-fn run_scene(toc: &TocArguments, resolution: Option<f64>) -> Result<Outcome, Failure> {
-    let SceneQuestion { scene, world, options } = SceneQuestion::read(toc)?;
+fn run_scene(asked: &PairArguments, resolution: Option<f64>) -> Result<Outcome, Failure> {
+    let SceneQuestion { scene, world, options } = SceneQuestion::read(asked)?;
     let pairs = world.contact_spans(scene.window, resolution);
-    let pairs = pairs.map_err(|error| Failure::at(&toc.a, scene.describe(error)))?;
+    let pairs = pairs.map_err(|error| Failure::at(&asked.a, scene.describe(error)))?;
     let resolution = resolution.unwrap_or(RESOLUTION * scene.window.length());
     let all = join_spans(scene.window, &pairs);
     let name = |id: BodyId| scene.bodies[id.index()].name.as_str();
     let list = |spans: &[ContactSpan]| spans.iter().map(to_json).collect::<Vec<Value>>();
-    let proof = if toc.verify { Some(prove_scene(&scene, options, resolution, &pairs)?) } else { None };
-    print_answer(&if toc.json {
+    let proof = if asked.verify { Some(prove_scene(&scene, options, resolution, &pairs)?) } else { None };
+    print_answer(&if asked.json {
         let of_pairs: Vec<Value> = pairs
             .iter()
             .map(|pair| json!({ "a": name(pair.a), "b": name(pair.b), "spans": list(&pair.spans) }))
@@ -86,7 +85,7 @@ fn run_scene(toc: &TocArguments, resolution: Option<f64>) -> Result<Outcome, Fai
         }
         text + &sizes_line_of(&scene)
     })?;
-    Ok(outcome_of(&all).reported(toc.exit_status))
+    Ok(outcome_of(&all).reported(asked.exit_status))
 }
 
 /// Proves the spans of all pairs again: those of the answer as they are, and that no other pair ever meets.

@@ -1,6 +1,6 @@
 //! `d2m toc`: one query.
 
-use crate::arguments::{MotionArguments, TocArguments};
+use crate::arguments::{MotionArguments, PairArguments, TocArguments};
 use crate::engine::{Pair, check_size};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
@@ -20,27 +20,17 @@ pub(super) struct MovingPair {
     pub(super) motion_a: AnyMotion,
     pub(super) motion_b: AnyMotion,
     pub(super) window: Window,
-    /// Where `--obj` writes to.
-    obj: Option<Output>,
     pub(super) travels: [Travel; 2],
 }
 
 /// Reads motions, then meshes.
-pub(super) fn read(arguments: &TocArguments) -> Result<MovingPair, Failure> {
+pub(super) fn read(arguments: &PairArguments) -> Result<MovingPair, Failure> {
     let (window, [motion_a, motion_b]) = arguments.motions.parse()?;
     let Some(b) = arguments.b.as_deref() else {
         return Err(Failure::at(
             &arguments.a,
             "a second mesh is missing, or a scene (.json) in place of both",
         ));
-    };
-    let MotionArguments { motion_a: file_a, motion_b: file_b, .. } = &arguments.motions;
-    let motion_files = [file_a, file_b].map(|motion| motion.strip_prefix('@'));
-    let meshes = [arguments.a.as_str(), b];
-    let inputs = motion_files.into_iter().flatten().chain(meshes).map(Path::new);
-    let obj = match &arguments.obj {
-        Some(path) => Some(Output::new(path)?.spare(inputs)?),
-        None => None,
     };
     let [a, b] = load_both(&arguments.a, b, &arguments.query.sizes)?;
     let pair = Pair::new(a, b, &arguments.query)?.on_all_threads();
@@ -49,14 +39,29 @@ pub(super) fn read(arguments: &TocArguments) -> Result<MovingPair, Failure> {
     let travels = [&motion_a, &motion_b].map(|motion| Travel::of(motion, window));
     warn_of_turn("--motion-a", travels[0]);
     warn_of_turn("--motion-b", travels[1]);
-    Ok(MovingPair { pair, motion_a, motion_b, window, obj, travels })
+    Ok(MovingPair { pair, motion_a, motion_b, window, travels })
+}
+
+/// Where `--obj` writes to: never over what is read.
+fn posed_file(arguments: &TocArguments) -> Result<Option<Output>, Failure> {
+    let MotionArguments { motion_a, motion_b, .. } = &arguments.pair.motions;
+    let motion_files = [motion_a, motion_b].map(|motion| motion.strip_prefix('@'));
+    let meshes = [Some(arguments.pair.a.as_str()), arguments.pair.b.as_deref()];
+    let inputs = motion_files.into_iter().chain(meshes).flatten().map(Path::new);
+    arguments
+        .obj
+        .as_deref()
+        .map(|path| Output::new(path)?.spare(inputs)?.called("--obj", &["obj"]))
+        .transpose()
 }
 
 /// Runs the command.
 pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
-    let MovingPair { pair, motion_a, motion_b, window, obj, travels } = read(arguments)?;
+    let TocArguments { pair: asked, .. } = arguments;
+    let posed = posed_file(arguments)?;
+    let MovingPair { pair, motion_a, motion_b, window, travels } = read(asked)?;
     let answer = pair.answer_with([&motion_a, &motion_b], window, arguments.further)?;
-    if let Some(scene) = obj {
+    if let Some(posed) = posed {
         let time = match &answer.verdict {
             TimeOfContact::Contact(contact) => contact.time_lo,
             TimeOfContact::Undecided { clear_until } => *clear_until,
@@ -68,34 +73,21 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
             let _ = writeln!(text, "o {name}");
             base += write_posed(&mut text, body.mesh(), motion, time, base);
         }
-        scene.write(&text)?;
+        posed.write(&text)?;
     }
-    let proof = prove(arguments, &pair, [&motion_a, &motion_b], window, &promises_of(&answer))?;
-    print_answer(&if arguments.json {
-        with_proof(arguments, report::json(&pair, window, &answer), proof)?
+    let proof = prove(asked, &pair, [&motion_a, &motion_b], window, &promises_of(&answer))?;
+    print_answer(&if asked.json {
+        with_proof(asked, report::json(&pair, window, &answer), proof)?
     } else {
-        with_proof(arguments, report::text(&pair, window, &answer), proof)?
+        with_proof(asked, report::text(&pair, window, &answer), proof)?
             + &sizes_line(pair.sizes(), Some(travels))
     })?;
-    Ok(Outcome::from(&answer.verdict).reported(arguments.exit_status))
-}
-
-/// Refuses what only `d2m toc` has.
-pub(super) fn refuse(arguments: &TocArguments, command: &str) -> Result<(), Failure> {
-    let given = [
-        ("--obj", arguments.obj.is_some()),
-        ("--start", arguments.further.start.is_some()),
-        ("--clearance", arguments.further.clearance),
-    ];
-    match given.into_iter().find(|(_, given)| *given) {
-        Some((option, _)) => Err(Failure::at(option, format!("d2m {command} has no such option"))),
-        None => Ok(()),
-    }
+    Ok(Outcome::from(&answer.verdict).reported(asked.exit_status))
 }
 
 /// What is promised, proven again if that is wanted.
 pub(super) fn prove(
-    arguments: &TocArguments,
+    arguments: &PairArguments,
     pair: &Pair,
     motions: [&dyn RigidMotion; 2],
     window: Window,
@@ -110,7 +102,7 @@ pub(super) fn prove(
 
 /// The answer with what became of its proof, as it is printed.
 pub(super) fn with_proof(
-    arguments: &TocArguments,
+    arguments: &PairArguments,
     text: String,
     proof: Option<Proof>,
 ) -> Result<String, Failure> {

@@ -4,24 +4,26 @@ use crate::answer_file::{Question, read_answer};
 use crate::arguments::VerifyArguments;
 use crate::engine::{Pair, check_size};
 use crate::failure::Failure;
+use crate::load::{named, read};
 use crate::outcome::Outcome;
 use crate::output::print;
 use crate::sizes::load_both;
 use crate::verification::{PairVerifier, joined};
 use serde_json::json;
-use std::io::Read;
+use std::path::Path;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &VerifyArguments) -> Result<Outcome, Failure> {
     let (window, [motion_a, motion_b]) = arguments.motions.parse()?;
-    let (place, bytes) = read(&arguments.answer)?;
+    let answer = Path::new(&arguments.answer);
+    let (place, bytes) = (named(answer), read(answer)?);
     let [a, b] = load_both(&arguments.a, &arguments.b, &arguments.query.sizes)?;
     let pair = Pair::new(a, b, &arguments.query)?;
     check_size("--motion-a", &motion_a, &pair.a)?;
     check_size("--motion-b", &motion_b, &pair.b)?;
     let verifier = PairVerifier::new(&pair)?;
     let question = Question { motions: [&motion_a, &motion_b], window, start: arguments.start };
-    let promises = read_answer(place, &bytes, &verifier, &question)?;
+    let promises = read_answer(&place, &bytes, &verifier, &question)?;
     let proofs = promises.iter().map(|promise| verifier.prove([&motion_a, &motion_b], window, promise));
     let proof = joined(proofs);
     print(&if arguments.json {
@@ -38,14 +40,4 @@ pub(crate) fn run(arguments: &VerifyArguments) -> Result<Outcome, Failure> {
     } else {
         Outcome::NotProven
     })
-}
-
-/// The bytes of the answer, and where they are from.
-fn read(path: &str) -> Result<(&str, Vec<u8>), Failure> {
-    if path != "-" {
-        return Ok((path, std::fs::read(path).map_err(|error| Failure::at(path, error))?));
-    }
-    let mut bytes = Vec::new();
-    std::io::stdin().read_to_end(&mut bytes).map_err(|error| Failure::at("standard input", error))?;
-    Ok(("standard input", bytes))
 }

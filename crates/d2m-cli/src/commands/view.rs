@@ -3,7 +3,7 @@
 use crate::arguments::{FurtherArguments, ViewArguments};
 use crate::engine::{Pair, check_size, options_of};
 use crate::failure::Failure;
-use crate::output::Output;
+use crate::output::{Output, require_distinct};
 use crate::report;
 use crate::sizes::load_both;
 use crate::view::{
@@ -24,9 +24,13 @@ const LONGEST: Duration = Duration::from_secs(3);
 pub(crate) fn run(arguments: &ViewArguments) -> Result<(), Failure> {
     let inputs: Vec<&Path> =
         [Some(&arguments.a), arguments.b.as_ref()].into_iter().flatten().map(Path::new).collect();
-    let output = |path: &String| Output::new(path)?.spare(inputs.iter().copied());
-    let (page, png) = (arguments.out.as_ref().map(output), arguments.png.as_ref().map(output));
-    let (page, png) = (page.transpose()?, png.transpose()?);
+    let output = |path: &Option<String>, option: &str, extensions: &[&str]| match path {
+        Some(path) => Output::new(path)?.spare(inputs.iter().copied())?.called(option, extensions).map(Some),
+        None => Ok(None),
+    };
+    let page = output(&arguments.out, "--out", &["html", "htm"])?;
+    let png = output(&arguments.png, "--png", &["png"])?;
+    require_distinct([&page, &png].into_iter().flatten())?;
     let size = StillSize::parse(&arguments.size).map_err(|reason| Failure::at("--size", reason))?;
     let packed = Path::new(&arguments.a);
     let is_packed = packed.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));

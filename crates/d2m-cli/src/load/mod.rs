@@ -2,7 +2,7 @@
 
 mod bytes;
 
-pub(crate) use bytes::read;
+pub(crate) use bytes::{named, read};
 
 use crate::failure::Failure;
 use crate::output::progress_bar;
@@ -100,6 +100,7 @@ pub(crate) fn load_with(source: &str, options: &ReadOptions) -> Result<Loaded, F
             _ if path.extension().is_some_and(|extension| extension == "json") => {
                 "; scenes are for d2m scene, d2m simulate and d2m view".to_owned()
             }
+            _ if source == "-" => "; a mesh is read from a file: its kind is known by its name".to_owned(),
             _ => String::new(),
         };
         let expected = format!("expected {}, .d2mtree or shape:NAME", MeshFormat::EXTENSIONS);

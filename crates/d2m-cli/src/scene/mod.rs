@@ -9,7 +9,7 @@ pub(crate) use body::SceneBody;
 pub(crate) use ignored::{Ignored, Names};
 
 use crate::failure::Failure;
-use crate::load::read;
+use crate::load::{named, read};
 use crate::mesh_library::MeshLibrary;
 use crate::orientation::warn_of_json;
 use crate::unlike_sizes::warn_of_scene_sizes;
@@ -33,7 +33,7 @@ pub(crate) struct Scene {
 impl Scene {
     /// Reads the file, its meshes and its motions.
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
-        let place = path.display();
+        let place = named(path);
         let bytes = read(path)?;
         let file = SceneFile::parse(&bytes).map_err(|error| error.in_file(place.to_string()))?;
         if let Ok(value) = serde_json::from_slice(&bytes) {

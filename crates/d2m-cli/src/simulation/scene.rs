@@ -2,8 +2,8 @@
 
 use super::fields::{Fields, short};
 use super::joints::joints;
-use crate::failure::Failure;
-use crate::load::read;
+use crate::failure::{Failure, parse_json};
+use crate::load::{named, read};
 use crate::mesh_library::MeshLibrary;
 use crate::orientation::warn_of_json;
 use crate::scene::{Ignored, Names, SceneBody, check_names};
@@ -69,24 +69,23 @@ const BODY_KEYS: &[&str] = &[
 /// Reads a scene and the meshes it names, relative to its folder.
 pub(crate) fn read_scene(path: &Path) -> Result<SimulatedScene, Failure> {
     let bytes = read(path)?;
-    let UniqueKeys(value) =
-        serde_json::from_slice(&bytes).map_err(|error| Failure::at(path.display(), error))?;
-    let scene = Fields::new(path.display().to_string(), &value, SCENE_KEYS)?;
+    let UniqueKeys(value) = parse_json(&named(path), &bytes)?;
+    let scene = Fields::new(named(path), &value, SCENE_KEYS)?;
     warn_of_json(scene.place(), &value);
     // They say nothing of a simulation, but what they say has to be something.
     scene.terms()?;
     let Settings { options, end, threads } = settings(&scene)?;
-    let mut simulation = Simulation::new(options).map_err(|error| Failure::at(path.display(), error))?;
+    let mut simulation = Simulation::new(options).map_err(|error| Failure::at(named(path), error))?;
     scene.required("bodies")?;
     let list = scene.list("bodies")?.map_or(&[][..], Vec::as_slice);
     if list.is_empty() {
         return Err(scene.fault("bodies", "the list is empty"));
     }
-    let window = Window::try_new(0.0, end).map_err(|error| Failure::at(path.display(), error))?;
+    let window = Window::try_new(0.0, end).map_err(|error| Failure::at(named(path), error))?;
     let mut library = MeshLibrary::new(path);
     let (mut bodies, mut ids) = (Vec::with_capacity(list.len()), Vec::with_capacity(list.len()));
     for (index, value) in list.iter().enumerate() {
-        let place = format!("{}, {}", path.display(), SceneEntry::place(index, value));
+        let place = format!("{}, {}", named(path), SceneEntry::place(index, value));
         let fields = Fields::new(place, value, BODY_KEYS)?;
         let body = SceneBody::read(fields.without(DYNAMIC_KEYS), fields.place(), window, &mut library)?;
         let described = describe(&fields, &body)?;

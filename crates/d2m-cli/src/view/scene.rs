@@ -2,6 +2,7 @@
 
 use super::{Holds, Mark, Picture, Span, Up, flights_of};
 use crate::failure::Failure;
+use crate::load::named;
 use crate::output::short;
 use crate::scene::Scene;
 use d2m::bvh::{MeshTree, QueryOptions, StartState, TimeOfContact};
@@ -18,7 +19,7 @@ pub(crate) fn picture_of_scene(path: &Path, options: QueryOptions) -> Result<Pic
     let scene = Scene::read(path)?;
     let mut world = scene.world(options);
     let contacts =
-        world.contacts(scene.window).map_err(|error| Failure::at(path.display(), scene.describe(error)))?;
+        world.contacts(scene.window).map_err(|error| Failure::at(named(path), scene.describe(error)))?;
     let window = [scene.window.start(), scene.window.end()];
     let [start, end] = window.map(short);
     let headline = format!("{} bodies from t = {start} to {end}", scene.bodies.len());
