@@ -32,10 +32,23 @@ fn number_fault(text: &str) -> Option<String> {
             Some(format!("points[{index}], {key}[{at}]: {} is not a finite number{joint}", shown(&list[at])))
         });
         lists.or_else(|| {
-            let time = point.get("time_from_start").filter(|time| !time.is_number())?;
-            Some(format!("points[{index}], time_from_start: {} is not a finite number", shown(time)))
+            let time = point.get("time_from_start").filter(|time| !is_time(time))?;
+            let what = match time {
+                Value::Object(parts) if !parts.contains_key(WORD) => {
+                    "not {\"sec\", \"nanosec\"} with numbers"
+                }
+                _ => "not a finite number",
+            };
+            Some(format!("points[{index}], time_from_start: {} is {what}", shown(time)))
         })
     })
+}
+
+/// Seconds, or seconds and nanoseconds in the keys of ROS.
+fn is_time(time: &Value) -> bool {
+    let has = |keys: [&str; 2]| keys.iter().all(|key| time.get(key).is_some_and(Value::is_number));
+    let is_of_two = time.as_object().is_some_and(|parts| parts.len() == 2);
+    time.is_number() || (is_of_two && (has(["sec", "nanosec"]) || has(["secs", "nsecs"])))
 }
 
 /// The key of an object that stands for a word which JSON does not have.

@@ -142,6 +142,52 @@ fn limits_are_warned_of_and_text_says_what_is_certified() {
     assert_eq!(output.status.code(), Some(11));
     assert!(stderr(&output).contains("joint \"shoulder\": the position 1.5"), "{}", stderr(&output));
     assert!(stdout(&output).starts_with("FREE: certified, no contact from 1 to 3"), "{}", stdout(&output));
+    assert!(stdout(&output).contains("\n  checked     1 pairs of 3 bodies\n"), "{}", stdout(&output));
+}
+
+/// A path as ROS writes it: a header, efforts, and times of seconds and nanoseconds.
+#[test]
+fn messages_of_ros_are_paths() {
+    let Files { folder, robot, path, scene } = &files("robot-ros");
+    let seconds = ask(&[robot, "--path", path, "--scene", scene]);
+    for (sec, nanosec) in [("sec", "nanosec"), ("secs", "nsecs")] {
+        let message = format!(
+            r#"{{"header": {{"stamp": {{"{sec}": 7}}, "frame_id": "foot"}}, "joint_names": ["shoulder"], "points": [
+              {{"positions": [0], "velocities": [], "effort": [], "time_from_start": {{"{sec}": 0, "{nanosec}": 1000000000}}}},
+              {{"positions": [1.6], "time_from_start": {{"{sec}": 2, "{nanosec}": 1000000000}}}}]}}"#
+        );
+        let message = folder.file("message.json", &message);
+        assert_eq!(ask(&[robot, "--path", &message, "--scene", scene]), seconds);
+    }
+    let with = |time: &str, word: &str| {
+        let file = folder.file("time.json", &PATH.replace(": 3}", &format!(": {time}}}")));
+        refused(&["robot", robot, "--path", &file], &["time.json", word]);
+    };
+    for time in [
+        r#"{"sec": 3}"#,
+        r#"{"sec": 3, "nanos": 0}"#,
+        r#"{"sec": 3, "secs": 3}"#,
+        r#"{"sec": 3, "nanosec": NaN}"#,
+    ] {
+        with(time, "points[1], time_from_start: {\"");
+        with(time, "is not {\"sec\", \"nanosec\"} with numbers");
+    }
+    with(r#"{"sec": 3, "nanosec": 0.5}"#, "invalid type: floating point");
+    with("\"3\"", "points[1], time_from_start: \"3\" is not a finite number");
+}
+
+/// A path of which nothing is checked is free, and that says nothing.
+#[test]
+fn what_was_checked_is_said() {
+    let Files { folder, robot, path, .. } = &files("robot-checked");
+    let disabled = r#"<robot name="three"><disable_collisions link1="foot" link2="lower"/></robot>"#;
+    let srdf = folder.file("all.srdf", disabled);
+    let output = d2m(&["robot", robot, "--path", path, "--srdf", &srdf]);
+    let warnings = stderr(&output);
+    assert!(warnings.contains("warning: of 3 bodies no pair is checked"), "{warnings}");
+    assert!(warnings.contains("all.srdf: it is of the robot \"three\", not of \"two\""), "{warnings}");
+    assert_eq!(ask(&[robot, "--path", path, "--srdf", &srdf])["pairs_checked"], 0);
+    assert_eq!(ask(&[robot, "--path", path])["pairs_checked"], 1);
 }
 
 #[test]

@@ -80,7 +80,7 @@ impl<'a> ShapeReader<'a> {
             UrdfShape::Cylinder { radius, length } => prism(*radius, *length).and_then(|prism| {
                 let excess = prism.error;
                 self.remarks.push(format!(
-                    "{}, line {line}: link {link:?}: the cylinder is checked as a prism that encloses it, by at most {excess:.2e}",
+                    "{}, line {line}: link {link:?}: the cylinder is checked as a prism around it that is larger by at most {excess:.2e}",
                     self.file
                 ));
                 Shape::new(Ok(prism.mesh), 0.0)

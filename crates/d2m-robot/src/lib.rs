@@ -51,6 +51,8 @@ mod packages;
 mod part;
 mod path_bodies;
 mod robot;
+#[cfg(feature = "serde")]
+mod ros_time;
 mod scene;
 #[cfg(feature = "dynamics")]
 mod simulated;

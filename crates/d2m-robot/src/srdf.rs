@@ -10,12 +10,13 @@ use std::path::Path;
 /// ```
 /// let srdf = d2m_robot::Srdf::parse("arm.srdf", r#"<robot name="arm">
 ///     <disable_collisions link1="base" link2="hand" reason="Never"/></robot>"#)?;
-/// assert_eq!(srdf.disabled_pairs()[0], ["base", "hand"]);
+/// assert_eq!((srdf.robot(), srdf.disabled_pairs()[0]), (Some("arm"), ["base", "hand"]));
 /// # Ok::<(), d2m_robot::RobotError>(())
 /// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Srdf {
     file: String,
+    robot: Option<String>,
     text: String,
     disabled: Vec<LinkPair>,
     disabled_links: Vec<LinkName>,
@@ -79,12 +80,26 @@ impl Srdf {
             enabled: by_link(&enabled),
             left_out: disabled_links.iter().map(|of: &LinkName| of.link.clone()).collect(),
         };
-        Ok(Self { file: file.to_owned(), text: text.to_owned(), disabled, disabled_links, enabled, partners })
+        let robot = root.attribute("name").map(str::to_owned);
+        Ok(Self {
+            file: file.to_owned(),
+            robot,
+            text: text.to_owned(),
+            disabled,
+            disabled_links,
+            enabled,
+            partners,
+        })
     }
 
     /// The file that it was read from.
     pub fn file(&self) -> &str {
         &self.file
+    }
+
+    /// The robot that it is of, if it names one.
+    pub fn robot(&self) -> Option<&str> {
+        self.robot.as_deref()
     }
 
     /// The text of the file.

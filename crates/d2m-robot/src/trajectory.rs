@@ -37,17 +37,37 @@ pub enum Interpolation {
 /// # Ok::<(), d2m_robot::RobotError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(from = "TrajectoryForm"))]
 #[non_exhaustive]
 pub struct Trajectory {
     /// The joints that the numbers of each point belong to.
     pub joint_names: Vec<String>,
     /// Two or more.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "d2m_motion::serde_object::all"))]
     pub points: Vec<TrajectoryPoint>,
     /// None: cubic where velocities are given, else straight.
-    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub interpolation: Option<Interpolation>,
+}
+
+/// What is read of a path: what a message of ROS has besides says nothing of it.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TrajectoryForm {
+    #[serde(default, rename = "header")]
+    _header: serde::de::IgnoredAny,
+    joint_names: Vec<String>,
+    #[serde(deserialize_with = "d2m_motion::serde_object::all")]
+    points: Vec<TrajectoryPoint>,
+    #[serde(default)]
+    interpolation: Option<Interpolation>,
+}
+
+#[cfg(feature = "serde")]
+impl From<TrajectoryForm> for Trajectory {
+    fn from(form: TrajectoryForm) -> Self {
+        Self { joint_names: form.joint_names, points: form.points, interpolation: form.interpolation }
+    }
 }
 
 /// One point of a path. A list of velocities or accelerations that is empty is not given.
@@ -72,7 +92,8 @@ pub struct TrajectoryPoint {
     /// Forces and torques of a ROS message: read, and not used.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub effort: Vec<f64>,
-    /// Seconds.
+    /// Seconds. In JSON also `{"sec", "nanosec"}`, as ROS writes them.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::ros_time::seconds"))]
     pub time_from_start: f64,
 }
 

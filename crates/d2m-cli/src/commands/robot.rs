@@ -63,13 +63,32 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     let is_link = |link: &str| robot.find_link(link).is_some();
     let unknown = srdf.iter().flat_map(|srdf| srdf.find_unknown_links(is_link));
     notes.extend(unknown.map(|text| format!("warning: {text}")));
+    if let Some(srdf) = &srdf
+        && let Some(other) = srdf.robot().filter(|&name| name != robot.name())
+    {
+        notes.push(format!(
+            "warning: {}: it is of the robot {other:?}, not of {:?}",
+            srdf.file(),
+            robot.name()
+        ));
+    }
     let fault = |error: d2m_robot::RobotError| Failure::at(&place, error);
     let mut scene = RobotScene::new(robot.into(), srdf.as_ref(), options).map_err(fault)?;
     if let Some(file) = &file {
         file.add_to(&mut scene, window)?;
     }
     let warnings = scene.limit_warnings(&path).map_err(fault)?;
-    notes.extend(unlike_sizes(&scene.bodies_along(&path).map_err(fault)?, scene.robot()));
+    let checked = {
+        let bodies = scene.bodies_along(&path).map_err(fault)?;
+        notes.extend(unlike_sizes(&bodies, scene.robot()));
+        Checked { pairs: bodies.pairs().len(), bodies: bodies.len() }
+    };
+    if checked.pairs == 0 {
+        notes.push(format!(
+            "warning: of {} bodies no pair is checked: that a path is free says nothing",
+            checked.bodies
+        ));
+    }
     notes.extend(far_turns(&path, &scene).map(|text| format!("warning: {place}: {text}")));
     notes.extend(warnings.iter().map(|warning| format!("warning: {place}: {warning}")));
     let pool = threads(arguments.threads.map_or(0, usize::from))?;
@@ -93,10 +112,11 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
         page.write(&picture_of_path(&bodies, window, &answer).to_html())?;
     }
     print(&if arguments.json {
-        let further = Further { clearance, proof };
+        let further = Further { checked, clearance, proof };
         json(&answer, window, &warnings, &further)
     } else {
         text(&answer, window, options.min_separation)
+            + &format!("  checked     {} pairs of {} bodies\n", checked.pairs, checked.bodies)
             + &clearance.as_ref().map_or(String::new(), nearness)
             + &proof.as_ref().map_or(String::new(), |proof| match proof {
                 Proof::Verified(steps) => {
@@ -162,8 +182,17 @@ fn options(arguments: &RobotArguments, file: Option<&RobotSceneFile<'_>>) -> Res
     Ok(options)
 }
 
-/// What was asked beside the answer.
+/// How much was checked.
+#[derive(Clone, Copy)]
+struct Checked {
+    pairs: usize,
+    /// Collision bodies of the links, obstacles and attached bodies.
+    bodies: usize,
+}
+
+/// What is said beside the answer.
 struct Further {
+    checked: Checked,
     clearance: Option<PathClearance>,
     proof: Option<Proof>,
 }
@@ -173,7 +202,7 @@ fn json(
     answer: &PathAnswer,
     window: Window,
     warnings: &[LimitWarning],
-    Further { clearance, proof }: &Further,
+    Further { checked, clearance, proof }: &Further,
 ) -> String {
     let mut object = json!({
         "status": status(answer),
@@ -182,6 +211,7 @@ fn json(
         "a": Value::Null,
         "b": Value::Null,
         "window": [window.start(), window.end()],
+        "pairs_checked": checked.pairs,
         "warnings": warnings.iter().map(LimitWarning::to_string).collect::<Vec<_>>(),
     });
     let mut put = |key: &str, value: Value| object[key] = value;
