@@ -44,11 +44,11 @@ impl<'a> RobotSceneFile<'a> {
 
     /// Adds its bodies to the robot's scene. The motions of obstacles have to cover the path, which lasts for this window.
     pub(crate) fn add_to(&self, scene: &mut RobotScene, window: Window) -> Result<(), Failure> {
-        let fields = Fields::new(named(&self.path), &self.value, SCENE_KEYS)?;
+        let fields = Fields::new(named(self.path), &self.value, SCENE_KEYS)?;
         let mut groups: Vec<[String; 2]> = Vec::new();
         let mut library = MeshLibrary::new(self.path);
         for (index, value) in Self::list(&fields, "bodies")?.iter().enumerate() {
-            let place = format!("{}, {}", named(&self.path), SceneEntry::place(index, value));
+            let place = format!("{}, {}", named(self.path), SceneEntry::place(index, value));
             let body = Fields::new(place, value, BODY_KEYS)?;
             let name = add_body(scene, &body, window, &mut library)?;
             if let Some(group) = body.text("group")? {
@@ -56,7 +56,7 @@ impl<'a> RobotSceneFile<'a> {
             }
         }
         for (index, value) in Self::list(&fields, "ignore")?.iter().enumerate() {
-            let place = format!("{}, ignore {index}", named(&self.path));
+            let place = format!("{}, ignore {index}", named(self.path));
             let words = value.as_array().map(|list| list.iter().map(Value::as_str).collect::<Vec<_>>());
             let Some([Some(a), Some(b)]) = words.as_deref() else {
                 return Err(Failure::at(place, format!("{} is not a pair of names", short(value))));
@@ -73,7 +73,7 @@ impl<'a> RobotSceneFile<'a> {
     /// What single pairs have of their own.
     fn set_pairs(&self, fields: &Fields<'_>, scene: &mut RobotScene) -> Result<(), Failure> {
         let entries = Self::list(fields, "pairs")?.iter().cloned().map(UniqueKeys).collect();
-        let in_file = |error: d2m_io::IoError| Failure::Input(error.in_file(named(&self.path)).to_string());
+        let in_file = |error: d2m_io::IoError| Failure::Input(error.in_file(named(self.path)).to_string());
         let bodies = scene.names().map(str::to_owned).collect::<Vec<_>>();
         let names = bodies.iter().map(String::as_str).collect();
         for ScenePair { a, b, start, min_separation, .. } in

@@ -35,9 +35,9 @@ impl Scene {
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
         let place = named(path);
         let bytes = read(path)?;
-        let file = SceneFile::parse(&bytes).map_err(|error| error.in_file(place.to_string()))?;
+        let file = SceneFile::parse(&bytes).map_err(|error| error.in_file(place.as_str()))?;
         if let Ok(value) = serde_json::from_slice(&bytes) {
-            warn_of_json(&place.to_string(), &value);
+            warn_of_json(&place, &value);
         }
         let SceneFile { window, bodies: entries, ignore, min_separation, tolerance, start, pairs, .. } = file;
         let mut library = MeshLibrary::new(path);
