@@ -106,14 +106,14 @@ impl Attempt {
 
     /// Velocities of flights that also restore the gap, or make room for rotation; what kinetic energy that adds. None: there is nothing to
     /// restore, or no velocities are found that keep what room there is as long as the present ones do, which stay then.
-    pub(crate) fn make_room(&mut self, inertia: &[(f64, DMat3)], gap: f64) -> Option<f64> {
+    pub(crate) fn make_room(&mut self, inertia: &[(f64, DMat3)]) -> Option<f64> {
         if self.found.targets == self.found.pushing {
             return None;
         }
         let (begun, before) = (self.system.present(), self.system.doubled_energy(inertia));
-        let could_last = self.lasts(gap, |k| self.restored(k));
+        let could_last = self.may_last();
         self.system.solve(&self.found.targets, self.accuracy, Start::Present);
-        if could_last && !self.lasts(gap, |_| 0.0) {
+        if could_last && !self.lasts(|_| 0.0) {
             self.system.take_back(begun);
             return None;
         }
@@ -122,18 +122,23 @@ impl Attempt {
     }
 
     /// The part of what restores the gap at a contact that makes up for what the velocities are off the law.
-    pub(crate) fn restored(&self, contact: usize) -> f64 {
+    fn restored(&self, contact: usize) -> f64 {
         RESTORED * (self.found.targets[contact] - self.found.pushing[contact])
+    }
+
+    /// Do the contacts last, with some of what is still to be added to restore the gap?
+    pub(crate) fn may_last(&self) -> bool {
+        self.lasts(|k| self.restored(k))
     }
 
     /// Does each contact of which hardly any room is left keep some for a part of the flight that counts, if `added` is added to its rate?
     /// Velocities that are off the law by little against what bodies do elsewhere may use up the last of the gap in no time, and their next
     /// ones half of what is left then.
-    pub(crate) fn lasts(&self, gap: f64, added: impl Fn(usize) -> f64) -> bool {
+    fn lasts(&self, added: impl Fn(usize) -> f64) -> bool {
         let length = LASTING * self.span.remaining;
         self.found.contacts.iter().enumerate().all(|(k, contact)| {
             let is_met = contact.row.is_none() && !contact.is_expected;
-            let is_tight = is_met && contact.distance < LAST * gap;
+            let is_tight = is_met && contact.distance < LAST * contact.gap;
             !is_tight || contact.shared_room() + (self.system.rate(k) + added(k)) * length >= 0.0
         })
     }

@@ -103,7 +103,7 @@ impl Problem<'_> {
         let speed = tried.system.mean_speed().min(moved().map(speed).fold(rate, f64::max));
         let left = LEFT_OVER * tried.system.left(tried.accuracy);
         let most = left.max(OF_SPEED * speed).max(UNSOLVED * rate);
-        let is_cramped = !self.lasts(&tried);
+        let is_cramped = !tried.may_last();
         if !is_cramped && (tried.found.residual <= most || closing.is_none()) {
             return tried;
         }
@@ -128,7 +128,7 @@ impl Problem<'_> {
         let ahead = Ahead { length: end - now, step: self.options.step, forces: false };
         let (contacts, joints) = locked(self.members, self.states, self.contacts, self.joints, ahead)?;
         let attempt = Problem { contacts: &contacts, joints: &joints, ..*self }.attempt(now, end, Room::Kept);
-        (attempt.found.missed <= OFF_JOINT * self.speed() && self.lasts(&attempt)).then_some(attempt)
+        (attempt.found.missed <= OFF_JOINT * self.speed() && attempt.may_last()).then_some(attempt)
     }
 
     /// Do joints pull bodies to and fro faster than flights could follow?
@@ -147,11 +147,6 @@ impl Problem<'_> {
         self.contacts.iter().any(|contact| contact.row.is_some()) && most <= LIKE * least
     }
 
-    /// Do the contacts last, with some of what is still to be added to restore the gap?
-    fn lasts(&self, attempt: &Attempt) -> bool {
-        attempt.lasts(self.options.gap, |k| attempt.restored(k))
-    }
-
     /// The longest flights, of some lengths, in which contacts close by no more than the room that they share, and solutions leave no more
     /// than `most`. If friction allows none, without: it can only hold what room there is. Where all is possible without friction, only what
     /// that locks shares room, as between wedges, and slips where hardly any is left: it crushes nothing by itself.
@@ -165,7 +160,7 @@ impl Problem<'_> {
         let contacts: Vec<ContactPoint> = self.contacts.iter().map(ContactPoint::without_friction).collect();
         let smooth = Problem { contacts: &contacts, ..*self };
         let slipping = smooth.attempt(now, end, Room::Kept);
-        let obeys = |attempt: &Attempt| attempt.found.residual <= most && self.lasts(attempt);
+        let obeys = |attempt: &Attempt| attempt.found.residual <= most && attempt.may_last();
         let is_possible = obeys(&slipping);
         match friction {
             Friction::Slips if is_possible => return None,

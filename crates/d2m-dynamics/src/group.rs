@@ -112,7 +112,7 @@ pub(crate) fn solve(
     let velocities = |system: &System| system.bodies.iter().map(|body| body.velocity).collect::<Vec<_>>();
     let mut physical = velocities(&attempt.system);
     let span = attempt.span;
-    if let Some(gained) = attempt.make_room(&inertia, options.gap) {
+    if let Some(gained) = attempt.make_room(&inertia) {
         // What an account may hold, and the energy of the speed that makes a gap in a step.
         let speed = options.gap / options.step;
         let held = |s: &Cow<'_, RigidBody>| {

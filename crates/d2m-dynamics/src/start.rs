@@ -19,6 +19,9 @@ const APART: f64 = 1.0 / (1u64 << 36) as f64;
 /// The part of that from which on bodies count as apart: nearer ones are parted as those that touch are, since no query resolves a half of
 /// what they have.
 const STILL_APART: f64 = 0.5;
+/// The part of the gap that pairs keep at least, 2⁻¹⁶: those that start closer part to that, since solutions may be off by a hundred-thousandth of a
+/// gap a step, and where the last of what a pair keeps is used up friction gives way.
+const LEAST_KEPT: f64 = 1.0 / (1u64 << 16) as f64;
 /// How far a body is moved on trial, of the same, to see where it can part: 2⁻²⁰.
 const TRIAL: f64 = 1.0 / (1u64 << 20) as f64;
 /// Overlaps up to this part of it are the rounding of poses, and count as touching: 2⁻⁴⁰.
@@ -144,7 +147,7 @@ impl Simulation {
         self.near_pairs(is_checked).into_iter().try_for_each(|(a, b)| self.placed(a, b).map(|_| ()))
     }
 
-    /// Pairs that start closer than the gap keep what they have; those that touch are returned.
+    /// Pairs that start closer than the gap keep what they have, or [`LEAST_KEPT`]; those that touch are returned.
     fn admit_placed(&mut self, (a, b): (usize, usize), placed: Placed) -> Option<Touch> {
         match placed {
             Placed::Apart(within) => {
@@ -152,7 +155,8 @@ impl Simulation {
                 if let Some(distance) = within
                     && !self.pairs.contains_key(&(a, b))
                 {
-                    self.pairs.insert((a, b), Box::new(Pair::new(distance)));
+                    let kept = distance.max(LEAST_KEPT * self.options.gap);
+                    self.pairs.insert((a, b), Box::new(Pair::new(kept)));
                 }
                 None
             }

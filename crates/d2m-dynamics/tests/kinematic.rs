@@ -158,3 +158,26 @@ fn what_turns_with_a_table_stays_on_it() {
         assert!(off < 0.1 * GAP, "{off} at {}", simulation.time());
     }
 }
+
+/// A plate that starts a part of the gap above a ramp that moves on: of which solutions leave nothing, or some.
+#[test]
+fn what_starts_close_to_a_ramp_that_moves_stays_on_it() {
+    let tree = |shape: &str| Arc::new(MeshTree::new(d2m_shapes::mesh(shape).unwrap()));
+    let turn = DQuat::from_rotation_z(0.3);
+    for (velocity, apart) in [DVec3::X, DVec3::Y * 0.5].into_iter().flat_map(|v| [(v, 1e-9), (v, 1e-8)]) {
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        let motion = ConstantTwist::REST.with_orientation(turn).with_linear_velocity(velocity);
+        let ramp = Body::new("ramp", tree("box?x=5&y=0.5&z=5")).with_kind(Kind::Kinematic(Arc::new(motion)));
+        simulation.add(&ramp.with_friction(0.35)).unwrap();
+        let place = turn * DVec3::Y * (0.52 + apart);
+        let plate = Body::new("plate", tree("box?x=0.3&y=0.02&z=0.3")).with_orientation(turn);
+        let plate = plate.with_position(place).with_linear_velocity(velocity).with_friction(0.35);
+        let id = simulation.add(&plate).unwrap();
+        while simulation.time() < 0.3 {
+            let report = simulation.step().unwrap();
+            assert!(report.segments.iter().all(|segment| segment.skipped == 0.0));
+        }
+        let off = simulation.position(id).distance(place + velocity * simulation.time());
+        assert!(off < 0.1 * GAP, "{off} of {apart}");
+    }
+}
