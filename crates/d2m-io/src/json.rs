@@ -54,8 +54,17 @@ pub fn json_fault(error: &serde_json::Error, line: &str) -> String {
 /// Characters at the start and at the end of what the parser says that are kept: it quotes a whole string.
 const KEPT: usize = 200;
 
-/// What the parser says, without the middle of what is long.
+/// What the parser says of text that is no JSON, and what that means to those who do not know it.
+const WORDS: [(&str, &str); 3] = [
+    ("expected value", "expected a JSON value"),
+    ("expected ident", "expected a JSON value"),
+    ("EOF while parsing", "the text ends within"),
+];
+
+/// What the parser says, in words that say what is missing and without the middle of what is long.
 fn short(text: &str) -> String {
+    let known = WORDS.iter().find_map(|(said, meant)| Some(format!("{meant}{}", text.strip_prefix(said)?)));
+    let text = known.as_deref().unwrap_or(text);
     let (start, end) = (text.char_indices().nth(KEPT), text.char_indices().nth_back(KEPT));
     match (start, end) {
         (Some((start, _)), Some((end, _))) if start < end => format!("{} … {}", &text[..start], &text[end..]),
@@ -159,11 +168,11 @@ mod tests {
     #[test]
     fn faults_of_json_name_the_word() {
         let fault = |text: &str| parse_json::<Vec<f64>>(text.as_bytes()).unwrap_err().to_string();
-        assert_eq!(fault("[1, NaN]"), "expected value at line 1 column 5: \"NaN\"");
+        assert_eq!(fault("[1, NaN]"), "expected a JSON value at line 1 column 5: \"NaN\"");
         let line = "[1, -Infinity]";
         let error = serde_json::from_str::<Vec<f64>>(line).unwrap_err();
         assert_eq!(json_fault(&error, line), "invalid number (before column 6): \"-Infinity\"");
-        assert!(fault("").contains("EOF"), "{}", fault(""));
+        assert!(fault("").contains("the text ends within a value"), "{}", fault(""));
         let long = fault(&format!("[\"{}\"]", "\u{e9}".repeat(100_000)));
         assert!(long.starts_with("invalid type: string") && long.contains(" at line 1 column "), "{long}");
         assert!(long.chars().count() < 480, "{long}");

@@ -1,5 +1,6 @@
 //! Errors of queries, with the numbers that they come from.
 
+use super::words::short_number;
 use d2m_bvh::{QueryError, Window};
 use d2m_motion::RigidMotion;
 use glam::DVec3;
@@ -12,6 +13,10 @@ use glam::DVec3;
 /// let rest = ConstantTwist::REST;
 /// let fault = d2m_io::query_fault(&QueryError::BadMotion { body: 1 }, [&rest, &rest], Window::UNIT);
 /// assert!(fault.starts_with("motion of B: x = [0.0, 0.0, 0.0]"), "{fault}");
+/// let spinning: ConstantTwist = "w=0,0,2e12".parse()?;
+/// let fault = d2m_io::query_fault(&QueryError::BadMotion { body: 0 }, [&spinning, &rest], Window::UNIT);
+/// assert!(fault.ends_with("over the window it turns by 2000000000000 radians: 2^40 and more are refused"), "{fault}");
+/// # Ok::<(), d2m_motion::MotionError>(())
 /// ```
 pub fn query_fault(error: &QueryError, motions: [&dyn RigidMotion; 2], window: Window) -> String {
     match error {
@@ -22,10 +27,28 @@ pub fn query_fault(error: &QueryError, motions: [&dyn RigidMotion; 2], window: W
             let triple = |vector: DVec3| format!("{:?}", vector.to_array());
             let [x, v, w] = [pose.translation, twist.linear, twist.angular].map(triple);
             let time = window.start();
-            format!(
-                "{place}: x = {x}, v = {v}, w = {w} at the time {time:?}: over the window it is not finite, turns by 2^40 radians, goes too far, or spins so slowly that the speed is lost to underflow; or its rounding exceeds the bodies"
-            )
+            format!("{place}: x = {x}, v = {v}, w = {w} at the time {time:?}: {}", reason(motion, window))
         }
         other => other.to_string(),
+    }
+}
+
+/// Turns that queries refuse, 2⁴⁰ radians.
+const MOST_TURN: f64 = 1_099_511_627_776.0;
+
+/// Why a query cannot bound the rounding of a motion: of a constant twist as far as its numbers say it.
+fn reason(motion: &dyn RigidMotion, window: Window) -> String {
+    let Some(twist) = motion.constant_twist() else {
+        return "over the window it is not finite, turns by 2^40 radians, goes too far, or spins so slowly that the speed is lost to underflow; or its rounding exceeds the bodies".to_owned();
+    };
+    let [way, turn] =
+        [twist.linear_velocity(), twist.angular_velocity()].map(|v| v.length() * window.length());
+    let [way_text, turn_text] = [way, turn].map(short_number);
+    if turn >= MOST_TURN {
+        format!("over the window it turns by {turn_text} radians: 2^40 and more are refused")
+    } else {
+        format!(
+            "over the window it goes {way_text} and turns by {turn_text} radians: doubles cannot place it so far away, beside bodies of these sizes, or its spin is so slow that it is lost to underflow"
+        )
     }
 }

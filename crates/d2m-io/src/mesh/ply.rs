@@ -31,7 +31,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<RawMesh, Fault> {
         }
     }
     let is_text = header.encoding == Encoding::Ascii;
-    let mut parts = Parts::default();
+    let stated = header.elements.get("vertex").map_or(0, |vertex| vertex.count);
+    let mut parts = Parts { stated, ..Parts::default() };
     if is_text {
         let line = reader.line();
         read_text(&String::from_utf8_lossy(reader.into_inner()), line, &header, &mut parts)?;
@@ -139,6 +140,8 @@ fn fault(error: &ParseError) -> Fault {
 /// What matters of the elements.
 #[derive(Default)]
 struct Parts {
+    /// Vertices by the header, which faces may name before they are read.
+    stated: usize,
     vertices: Vec<DVec3>,
     polygons: Vec<Vec<u32>>,
 }
@@ -147,7 +150,7 @@ impl Parts {
     fn add(&mut self, name: &str, element: &Element) -> Result<(), String> {
         match name {
             "vertex" => self.vertices.push(element.position()?),
-            "face" => self.polygons.push(element.polygon()?),
+            "face" => self.polygons.push(element.polygon(self.stated)?),
             _ => {}
         }
         Ok(())
@@ -215,10 +218,14 @@ impl Element {
         Ok(DVec3::from_array(position))
     }
 
-    fn polygon(&self) -> Result<Vec<u32>, String> {
+    fn polygon(&self, vertex_count: usize) -> Result<Vec<u32>, String> {
         let indices = self.indices.as_ref().ok_or("the list vertex_indices is missing")?;
-        let check =
-            |&index: &i64| u32::try_from(index).map_err(|_| format!("vertex index {index} is out of range"));
+        let check = |&index: &i64| {
+            let known = u32::try_from(index).ok().filter(|&known| (known as usize) < vertex_count);
+            known.ok_or_else(|| {
+                format!("vertex index {index} is out of range, the file has {vertex_count} vertices")
+            })
+        };
         indices.iter().map(check).collect()
     }
 }

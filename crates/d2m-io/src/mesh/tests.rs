@@ -311,11 +311,11 @@ fn faults_name_the_place_and_the_value() {
     let good = ply_text(&tetrahedron());
     assert_eq!(
         ply(&good.replace("3 1 3 2", "3 1 9 2")).1,
-        "triangle 3: vertex index 9 is out of range, the mesh has 4 vertices"
+        "face 3: vertex index 9 is out of range, the file has 4 vertices"
     );
     assert_eq!(
         ply(&good.replace("3 1 3 2", "3 1 -3 2")),
-        text(19, "face 3: vertex index -3 is out of range")
+        text(19, "face 3: vertex index -3 is out of range, the file has 4 vertices")
     );
     assert_eq!(
         ply(&good.replace("3 1 3 2", "3 1 b 2")),
@@ -435,4 +435,19 @@ fn scale_unit_and_merging() {
     let merged = ReadOptions::new().with_merging(Merging::Always);
     let mesh = parse_mesh(twice.as_bytes(), MeshFormat::Obj, &merged).unwrap().mesh;
     assert_eq!((mesh.vertex_count(), mesh.triangles()), (3, [[0, 1, 2], [0, 2, 1]].as_slice()));
+}
+
+/// Line, face of the file and value, also where the faces come before the vertices.
+#[test]
+fn indices_beyond_the_vertices_of_a_ply_are_named_by_their_line() {
+    let (vertices, faces) = ("0 0 0\n1 0 0\n0 1 0\n", "3 0 1 2\n4 0 1 2 3\n");
+    let vertex = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    let face = "element face 2\nproperty list uchar int vertex_indices\n";
+    for (text, line) in [
+        (format!("ply\nformat ascii 1.0\n{vertex}{face}end_header\n{vertices}{faces}"), 14),
+        (format!("ply\nformat ascii 1.0\n{face}{vertex}end_header\n{faces}{vertices}"), 11),
+    ] {
+        let reason = "face 1: vertex index 3 is out of range, the file has 3 vertices".to_owned();
+        assert_eq!(ply::parse(text.as_bytes()), Err(Fault { line: Some(line), reason }));
+    }
 }
