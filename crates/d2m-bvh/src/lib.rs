@@ -77,6 +77,7 @@ pub use d2m_mesh::{
     proximities, proximities_with, proximities_within, reduce_proximities, try_colliding_pair,
 };
 pub use evidence::Evidence;
+pub use glam;
 pub use moving::Moving;
 pub use options::{Mode, QueryOptions, Start};
 pub use pair_cache::PairCache;

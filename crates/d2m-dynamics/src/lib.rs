@@ -92,6 +92,7 @@ pub use contact::Material;
 pub use d2m_mesh::{MassError, MassProperties};
 pub use error::{SimulationError, StepError};
 pub use frozen::{Frozen, RayAnswer, RayError};
+pub use glam;
 pub use joint::{Joint, JointKind, Motor, MotorTarget, Spring};
 pub use listener::ContactListener;
 pub use options::SimulationOptions;

@@ -62,6 +62,7 @@ pub use closest::closest_weights;
 pub use contact::{ContactBracket, ContactDetails, FirstContact};
 pub use exact_sign::{orient2d, orient3d, triple_product_sign};
 pub use feature_pair::FeaturePair;
+pub use glam;
 pub use moving_sphere::{FirstMeeting, MovingSphere};
 pub use options::ContactOptions;
 pub use pair_motion::{PairMotion, PlacedTriangle};

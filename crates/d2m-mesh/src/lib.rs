@@ -61,6 +61,7 @@ pub use cancel::{CancelFlag, Canceller};
 pub use d2m_lanes::InstructionSet;
 pub use enclosing_sphere::EnclosingSphere;
 pub use error::QueryError;
+pub use glam;
 pub use mass::{MassError, MassProperties};
 pub use mesh::{Edge, MAX_COORDINATE, MeshArrays, MeshError, Topology, TriMesh, Validation};
 pub use meter::{Exhausted, Meter, Stop};

@@ -110,7 +110,7 @@ impl ConstantTwist {
     /// # Panics
     /// If a component is not finite.
     pub fn with_position(self, position: DVec3) -> Self {
-        Self { position, ..self }.validated().expect("finite position")
+        Self { position, ..self }.validated().unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// The same with another orientation at the reference time (any quaternion but zero; normalised exactly).
@@ -118,7 +118,7 @@ impl ConstantTwist {
     /// # Panics
     /// If a component is not finite or the norm is outside [1e-150, 1e150].
     pub fn with_orientation(self, orientation: DQuat) -> Self {
-        Self { orientation, ..self }.validated().expect("finite non-zero orientation")
+        Self { orientation, ..self }.validated().unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// The same with another linear velocity.
@@ -126,7 +126,7 @@ impl ConstantTwist {
     /// # Panics
     /// If a component is not finite.
     pub fn with_linear_velocity(self, linear_velocity: DVec3) -> Self {
-        Self { linear_velocity, ..self }.validated().expect("finite linear velocity")
+        Self { linear_velocity, ..self }.validated().unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// The same with another angular velocity (world axes).
@@ -134,7 +134,7 @@ impl ConstantTwist {
     /// # Panics
     /// If a component is not finite.
     pub fn with_angular_velocity(self, angular_velocity: DVec3) -> Self {
-        Self { angular_velocity, ..self }.validated().expect("finite angular velocity")
+        Self { angular_velocity, ..self }.validated().unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// The same with another reference time.
@@ -142,7 +142,7 @@ impl ConstantTwist {
     /// # Panics
     /// If it is not finite.
     pub fn with_reference_time(self, reference_time: f64) -> Self {
-        self.try_with_reference_time(reference_time).expect("finite reference time")
+        self.try_with_reference_time(reference_time).unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// The same with another reference point.
@@ -150,7 +150,7 @@ impl ConstantTwist {
     /// # Panics
     /// If a component is not finite.
     pub fn with_at(self, at: DVec3) -> Self {
-        self.try_with_at(at).expect("finite body point")
+        self.try_with_at(at).unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// World position of `at` at the reference time.

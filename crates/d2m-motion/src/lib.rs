@@ -98,6 +98,7 @@ pub use constant_twist::ConstantTwist;
 pub use covered_motion::{CoveredMotion, OutsideDomain};
 pub use error::MotionError;
 pub use fitted_twists::{FittedClock, FittedTwists, MovingBall};
+pub use glam;
 pub use joint::{Joint, JointKind};
 pub use joint_points::JointPoints;
 pub use joint_value::JointValue;

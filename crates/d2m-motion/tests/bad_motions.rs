@@ -143,3 +143,10 @@ fn other_paces() {
     }
     names(Retimed::try_new(ConstantTwist::REST, 1.0, f64::NAN), &["offset", "NaN"]);
 }
+
+/// Who does not want to handle an error reads the same sentence.
+#[test]
+#[should_panic(expected = "linear_velocity[0] is inf: every component of a motion must be finite")]
+fn what_panics_says_what_is_wrong() {
+    let _ = ConstantTwist::REST.with_linear_velocity(DVec3::X * f64::INFINITY);
+}

@@ -33,4 +33,5 @@ pub use feature::{
     RelativeFrame, RelativeMotion, SphereOverDomain, TriangleFace, edge_edge, point_polygon, point_triangle,
     sphere_sphere, test_sphere_pair,
 };
+pub use glam;
 pub use mesh::{CrossCheck, Moving, SphereTree, cross_check, time_of_contact};

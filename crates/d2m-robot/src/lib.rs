@@ -67,6 +67,7 @@ pub use answer::{PathAnswer, PathContact};
 pub use check::EdgeChecker;
 pub use clearance::PathClearance;
 pub use error::RobotError;
+pub use glam;
 pub use inertial::{Inertial, JointDynamics};
 pub use joints::{JointLimits, JointType, Mimic};
 pub use limits::{LimitKind, LimitWarning};

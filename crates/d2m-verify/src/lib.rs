@@ -36,6 +36,7 @@ mod solid;
 mod verify;
 
 pub use claim::{Body, Claim, Query, Reason, Solid, TimeSpan, Verdict};
+pub use glam;
 pub use mesh::{Mesh, MeshFault};
 pub use verify::verify;
 

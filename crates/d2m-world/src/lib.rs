@@ -39,6 +39,7 @@ mod world;
 pub use aabb::Aabb;
 pub use body::{Body, Group, SharedMotion};
 pub use box_tree::BoxTree;
+pub use glam;
 pub use nearest::{PairDistance, PairFault, PairsOfBodies};
 pub use world::{
     BodyId, Candidate, FirstContact, PairClearance, PairContact, PairProximities, PairSpans, PlannedMotion,
