@@ -146,3 +146,28 @@ fn joints_that_cannot_be_are_refused_by_their_place() {
         refused(&["simulate", &path, "--out", "-"], &[&format!("bad{k}.json"), place, reason]);
     }
 }
+
+/// The example scene: a drawer that opens towards +z, whose joint is with the world and whose value therefore falls.
+#[test]
+fn limits_that_do_not_hold_at_the_start_are_warned_of() {
+    let folder = Folder::new("simulation-joints-start");
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/door.json");
+    let scene: Value = serde_json::from_str(&fs::read_to_string(example).unwrap()).unwrap();
+    let all = run(&folder, "door", &scene);
+    let drawer = states(&all).into_iter().filter_map(|bodies| numbers_of(&bodies[2])).next_back().unwrap();
+    assert!((drawer[2] - 1.2).abs() < 1e-3, "{drawer:?}");
+    let mut far = scene;
+    far["joints"][1]["limits"] = json!([0.1, 0.4]);
+    far["simulation"]["end"] = json!(0.01);
+    let far = folder.file("far.json", &far.to_string());
+    let warned = stderr(&d2m(&["simulate", &far, "--out", &folder.path("far.jsonl")]));
+    let expected =
+        "far.json, joints, entry 1: limits: [0.1, 0.4] do not hold at the start, where the value is 0";
+    assert!(warned.contains(expected), "{warned}");
+    assert_eq!(warned.matches("warning").count(), 1, "{warned}");
+}
+
+/// The place of a state that is given.
+fn numbers_of(state: &Value) -> Option<[f64; 3]> {
+    state.is_object().then(|| numbers(&state["x"]))
+}

@@ -17,6 +17,7 @@ fn the_example_scenes_are_answered_the_same_at_any_number_of_threads() {
         let scene = example(name);
         let all = d2m(&["scene", &scene, "--json", "--threads", "1"]);
         assert_eq!(all.status.code(), Some(0), "{}", stderr(&all));
+        assert!(stderr(&all).is_empty(), "an example needs no warning: {}", stderr(&all));
         assert_eq!(stdout(&d2m(&["scene", &scene, "--json", "--threads", "3"])), stdout(&all));
         let all: Value = serde_json::from_str(&stdout(&all)).unwrap();
         let first = d2m(&["scene", &scene, "--json", "--first", "--exit-status"]);

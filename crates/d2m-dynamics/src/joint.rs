@@ -157,7 +157,7 @@ impl Spring {
 /// A joint of two bodies, or of one and the world, to be added by [`Simulation::add_joint`](crate::Simulation::add_joint).
 ///
 /// Its value – the angle by which b has turned against a about the axis, or the length by which it has moved along it – is zero where it is
-/// added. Joints hold to rounding in velocities, in the middle of each flight; what the ends of flights are off is taken back by the next
+/// added. Where b is the world, a body a that moves along the axis therefore has a negative value. Joints hold to rounding in velocities, in the middle of each flight; what the ends of flights are off is taken back by the next
 /// ones. What is certified is what flies, joints or not.
 ///
 /// ```

@@ -12,8 +12,9 @@ use d2m::motion::AnyMotion;
 #[command(after_help = "\
 A motion is x=1,2,3;q=w,x,y,z;v=1,2,3;w=1,2,3[;at=1,2,3][;t=0]: position, orientation, velocity, angular velocity
 (radians, or degrees as 90deg, per unit of time, world axes), the body point that x and v belong to, and the time that x and q belong to.
-What is left out is zero (q: unturned). rpy=roll,pitch,yaw may stand for q (as in URDF). @FILE reads a JSON form: the same keys; {\"times\", \"poses\": [{\"x\", \"q\"}, ...], \"join\": \"linear\" or \"screw\"} or
-{\"times\", \"spans\"} for keyframes; {\"chain\": [{\"x\", \"q\", \"joint\", \"axis\", \"value\"}, ...]} for a link of an arm, with joint
+What is left out is zero (q: not turned). rpy=roll,pitch,yaw may stand for q (as in URDF). @FILE reads a JSON form: the same keys, without rpy and with
+angles in radians; {\"times\", \"poses\": [{\"x\", \"q\"}, ...], \"join\": \"linear\" or \"screw\"} or {\"times\", \"spans\": [constant twists]} for keyframes, with
+\"join\": \"cubic\" or \"quintic\" for a smooth path (and \"twists\" at the poses if known); {\"chain\": [{\"x\", \"q\", \"joint\", \"axis\", \"value\"}, ...]} for a link of an arm, with joint
 fixed, revolute or prismatic and value a polynomial [c0, c1, ...] or {\"times\", \"pieces\"}. The window must lie within the times.
 
 The answer is contact, separated or undecided. That nothing meets before the bracket is proven, and so is separated, in

@@ -9,12 +9,14 @@ use std::path::PathBuf;
 A scene: {\"bodies\": [{\"name\", \"mesh\", \"scale\", \"kind\": \"dynamic\" | \"kinematic\" | \"static\", \"pose\": {\"x\", \"q\"},
 \"velocity\": {\"v\", \"w\"}, \"motion\", \"density\" or \"mass\", \"center\", \"inertia\", \"restitution\", \"friction\", \"group\",
 \"solid\", \"radius\", \"damping\": {\"linear\", \"angular\"}}], \"ignore\": [[name or group, name or group]], \"pairs\": [{\"a\", \"b\", \"restitution\", \"friction\"}],
-\"joints\": [{\"kind\", \"a\", \"b\", \"point\", \"axis\", \"limits\", \"motor\", \"spring\", \"friction\", \"collide\"}],
+\"joints\": [{\"kind\": \"fixed\" | \"revolute\" | \"prismatic\" | \"spherical\", \"a\", \"b\": name or null (the world), \"point\", \"axis\", \"limits\": [lo, hi],
+\"motor\": {\"velocity\" or \"position\", \"max\", \"stiffness\", \"damping\"}, \"spring\": {\"stiffness\", \"damping\", \"rest\"}, \"friction\", \"collide\"}],
 \"simulation\": {\"gravity\", \"step\", \"end\", \"gap\", \"max_events\", \"sleep\", \"threads\"}}. What is left out: dynamic, at rest at the origin, density 1000, no
 restitution, no friction; gravity [0, -9.81, 0], step 0.01, end 5, gap (between bodies that rest on each other) 0.001, max_events
 (contact events a step) 128, sleep true. A body with a radius is everything within that distance of its mesh, whose mass it has or that is
-given; damping is the part of its velocity that a body loses in a unit of time. A kinematic body follows its motion, which has any JSON form of d2m toc; it has no pose and no
-velocity besides. Without a motion it rests in its pose.
+given; velocities fade by a factor of exp(-damping) in a unit of time. A kinematic body follows its motion, which has any JSON form of d2m toc; it has no pose and no
+velocity besides. Without a motion it rests in its pose. The value of a joint, which its limits, motor and spring are about, is how far b has turned (radians) or moved
+against a since the start, about or along the axis; point and axis are given in the world at the start.
 A run: a line with the bodies' masses, then a line for each segment, in which every body flies a constant twist about its
 center of mass: {\"t0\", \"t1\", \"bodies\" or \"changed\", \"contacts\", \"skipped\", \"wall\"}; skipped is the time for which bodies stood
 still because max_events were used up, wall the seconds that it took.
@@ -24,6 +26,7 @@ Exit codes: 0 done, 2 bad usage, 3 bad input or a run that cannot go on.
 
 Example:
   d2m simulate docs/scenes/pile.json --out run.jsonl
+  d2m simulate docs/scenes/door.json --out door.jsonl
   d2m view run.jsonl --out run.html")]
 pub(crate) struct SimulateArguments {
     /// Scene, JSON

@@ -2,6 +2,7 @@
 
 use super::fields::Fields;
 use crate::failure::Failure;
+use crate::output::note;
 use d2m_dynamics::{BodyId, Joint, JointKind, Motor, MotorTarget, Simulation, Spring};
 use serde_json::Value;
 
@@ -59,6 +60,13 @@ fn joint(fields: &Fields<'_>, names: &[String], ids: &[BodyId]) -> Result<Joint,
         joint = joint.with_axis(axis);
     }
     if let Some(limits) = fields.numbers::<2>("limits")? {
+        let [lo, hi] = limits;
+        if lo <= hi && !(lo..=hi).contains(&0.0) {
+            note(&format!(
+                "d2m: warning: {}: limits: {limits:?} do not hold at the start, where the value is 0: the bodies are driven there at once",
+                fields.place()
+            ));
+        }
         joint = joint.with_limits(limits);
     }
     if let Some(fields) = fields.object("motor", &["velocity", "position", "max", "stiffness", "damping"])? {
