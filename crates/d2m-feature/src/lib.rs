@@ -26,6 +26,8 @@
 //! - [`closest_weights`]: the point of a triangle closest to another one, to rounding.
 //! - [`proven_crossing`]: of triangles whose vertices are known up to an error.
 //! - [`triangles_intersect`], [`orient2d`], [`orient3d`], [`triple_product_sign`]: exact.
+//!
+//! Vectors and quaternions are those of [`glam`], in the version that is given out here.
 #![doc(html_root_url = "https://docs.rs/d2m-feature")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]

@@ -32,6 +32,8 @@
 //! ## Errors
 //! [`QueryError`], [`MeshError`], [`TreeError`], [`TreeFileError`]: bad input, with index and value. Hard
 //! cases are no errors.
+//!
+//! Vectors and quaternions are those of [`glam`], in the version that is given out here.
 #![doc(html_root_url = "https://docs.rs/d2m-mesh")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
