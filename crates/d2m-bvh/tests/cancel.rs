@@ -1,9 +1,9 @@
 //! Queries that are cancelled from elsewhere end undecided, in the middle too, and what they proved until then holds.
 
 use d2m_bvh::{
-    Budget, CancelFlag, Canceller, MeshTree, Moving, PairCache, Posed, ProximityOptions, QueryOptions, Solid,
-    TimeOfContact, TriMesh, Window, bound_distance, collide_within, proximities_within, time_of_contact,
-    time_of_contact_batch, time_of_contact_with,
+    Budget, CancelFlag, Canceller, ClearanceOptions, ClearanceStatus, MeshTree, Moving, PairCache, Posed,
+    ProximityOptions, QueryOptions, Solid, TimeOfContact, TriMesh, Window, bound_distance, clearance,
+    collide_within, proximities_within, time_of_contact, time_of_contact_batch, time_of_contact_with,
 };
 use d2m_interval::Interval;
 use d2m_motion::{
@@ -121,4 +121,22 @@ fn every_kind_of_query_is_cancelled() {
     assert_eq!(ask(), [true; 6]);
     canceller.cancel();
     assert_eq!(ask(), [false; 6]);
+}
+
+/// Of bodies that lie on each other all over it takes many tests to prove that they share a point: what a small budget does not pay for is not done.
+#[test]
+fn clearances_of_bodies_that_meet_keep_the_budget() {
+    let ring = ring();
+    let turned = DQuat::from_rotation_x(0.7);
+    let still = ConstantTwist::REST.with_orientation(turned);
+    let [a, b] = [still, still.with_linear_velocity(DVec3::X)];
+    let bodies = [&a, &b].map(|motion| Moving::new(&ring, motion));
+    let within = |budget: Budget| {
+        let options = ClearanceOptions::default().with_budget(budget);
+        clearance(bodies[0], bodies[1], Window::UNIT, &options).unwrap()
+    };
+    assert_eq!(within(Budget::UNLIMITED).upper, 0.0);
+    let small = (0..30).map(|k| within(Budget::UNLIMITED.with_node_tests(1 << k)));
+    let first = small.into_iter().find(|found| found.status == ClearanceStatus::Contact).unwrap();
+    assert!(first.upper > 0.0 && first.upper < 1e-9, "{first:?}");
 }

@@ -62,6 +62,10 @@ impl DeepPoint {
             if solids[1 - body] == Solid::Surface || !is_corner && solids[body] == Solid::Surface {
                 continue;
             }
+            // What is found is as good without the others.
+            if meter.is_exhausted() {
+                break;
+            }
             meter.spend(TESTS_A_POINT);
             // In its body's own frame the point is what it is.
             let Ok(mesh) = TriMesh::point(point) else { continue };
@@ -163,6 +167,22 @@ mod tests {
             let other = find(&exchanged).unwrap();
             assert!((other.depth - point.depth).abs() < 1e-12, "{other:?} {point:?}");
         }
+    }
+
+    /// Of the points that one way through them all would cost, half as many tests pay for the first ones alone, and none for none.
+    #[test]
+    fn points_are_sought_for_as_long_as_the_budget_lasts() {
+        let (large, small) = (cube(1.0), cube(0.125));
+        let still = ConstantTwist::REST;
+        let bodies = [Moving::new(&large, &still), Moving::new(&small, &still)];
+        let spent = |most: u64| {
+            let mut meter = Meter::unlimited().at_most(most);
+            let found = DeepPoint::find(&bodies, [Solid::Filled; 2], &[[0, 0], [5, 7]], 0.0, &mut meter);
+            (found.is_some(), meter.spent())
+        };
+        let (_, all) = spent(u64::MAX);
+        assert_eq!(spent(0), (false, 0));
+        assert!(spent(all / 2).1 < all / 2 + 2 * TESTS_A_POINT);
     }
 
     /// Bodies that share no point, or only points of their surfaces, have none that is deep.

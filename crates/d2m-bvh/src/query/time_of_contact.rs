@@ -4,7 +4,7 @@ use super::at_start::judged;
 use super::leave::of_departing;
 use super::meshes::of_meshes;
 use super::rounded::Rounded;
-use crate::{Answered, Moving, QueryError, QueryOptions, Start, TimeOfContact, Window};
+use crate::{Answered, Meter, Moving, QueryError, QueryOptions, Start, TimeOfContact, Window};
 
 /// First time in `window` at which the two bodies touch.
 ///
@@ -81,7 +81,12 @@ pub fn time_of_contact_counted(
             let Answered { answer, work } = of_departing([a, b], window, &options)?;
             Answered { answer: answer.answer, work }
         }
-        Start::Report => judged(&of_meshes([a, b], window, &options)?, &[a, b], window, &options)?,
+        Start::Report => {
+            let meter = Meter::new(&options.budget);
+            let found = of_meshes([a, b], window, &options)?;
+            // Of the same time.
+            judged(&found, &[a, b], window, &options.with_budget(meter.rest()))?
+        }
     };
     Ok(Answered { answer: rounded.answer(answer), work })
 }

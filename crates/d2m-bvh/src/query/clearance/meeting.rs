@@ -1,8 +1,8 @@
 //! Are bodies that come within the tolerance of each other proven to share a point?
 
 use super::Descent;
+use crate::Contact;
 use crate::query::at_start::meeting_at;
-use crate::{Contact, Meter};
 use d2m_mesh::at_rest::Meeting;
 
 /// Parts of what is left of the window after a contact, each half of the one before, after which the bodies are looked at: those that go
@@ -11,7 +11,7 @@ const LOOKS: i32 = 16;
 
 impl Descent<'_> {
     /// Do they at the times of this contact, or at one of a few times later?
-    pub(super) fn share_a_point_from(&self, contact: &Contact) -> bool {
+    pub(super) fn share_a_point_from(&mut self, contact: &Contact) -> bool {
         if self.rounded.sum() != 0.0 {
             return false;
         }
@@ -20,11 +20,11 @@ impl Descent<'_> {
         [contact.time_lo, from].into_iter().chain(later).any(|time| self.share_a_point_at(time))
     }
 
-    fn share_a_point_at(&self, time: f64) -> bool {
-        let bodies = &self.sampler.bodies;
+    fn share_a_point_at(&mut self, time: f64) -> bool {
+        let bodies = self.sampler.bodies;
         let solids = bodies.map(|body| body.solid.unwrap_or(self.options.solid));
-        // Each look has the patience that a start has.
-        match meeting_at(bodies, solids, time, &mut Meter::unlimited()) {
+        // Each look has the patience that a start has, as far as the budget goes.
+        match meeting_at(&bodies, solids, time, &mut self.meter) {
             Ok(Some(Meeting::Overlapping(_))) => true,
             // Parting says that no more than some roundings are between them. Those are a distance, unless it is that of placing them.
             Ok(Some(Meeting::Touching(touch))) => {

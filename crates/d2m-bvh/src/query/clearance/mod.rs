@@ -344,7 +344,7 @@ impl<'a> Descent<'a> {
     }
 
     /// The bodies come within the tolerance of each other.
-    fn contact(&self, contact: &Contact, best: &Sample) -> Clearance {
+    fn contact(&mut self, contact: &Contact, best: &Sample) -> Clearance {
         let triangles = [contact.triangle_a, contact.triangle_b];
         let met = self.sampler.pair_at(triangles, contact.time_lo);
         let lowest = self

@@ -56,6 +56,13 @@ pub(super) struct TouchingPair {
 }
 
 impl TouchingPair {
+    /// Two points that part along some directions, for tests.
+    #[cfg(test)]
+    pub(super) fn along(directions: &[DVec3]) -> Self {
+        let axes = directions.iter().map(|&direction| Axis { direction, blur: 0.0, across: None }).collect();
+        Self { triangles: [0; 2], corners: [[DVec3::ZERO; 3]; 2], axes, is_flat: true, spread: 0.0 }
+    }
+
     pub(super) fn new(scene: &RestingScene<'_>, triangles: [u32; 2], need: f64, sides: Sides) -> Self {
         let corners = [scene.place(0, triangles[0]), scene.place(1, triangles[1])];
         let spread = corners.as_flattened().iter().map(|p| p.distance(corners[0][0])).fold(0.0, f64::max);

@@ -30,7 +30,7 @@ use core::cmp::Ordering;
 use d2m_lanes::power_of_two;
 use exact::ExactPlaces;
 use glam::DVec3;
-use parting::{LEAST_RISE, directions, steepest_rise};
+use parting::{Directions, LEAST_RISE, directions, mixtures, steepest_rise};
 
 /// Pairs of triangles that a direction is chosen by, and that exact signs are evaluated of.
 const MOST_PAIRS: usize = 1 << 11;
@@ -236,20 +236,25 @@ impl<'a> Meeters<'a> {
         let known = if is_known { Near::All } else { Near::Some };
         let exact = if self.blur > 0.0 { None } else { ExactPlaces::try_new(self.bodies) };
         let oriented = [0, 1].map(|k| self.solids[k] == Solid::Filled && scene.trees[k].oriented);
-        let pairs = |sides: Sides| -> Vec<TouchingPair> {
-            near.iter().map(|&pair| TouchingPair::new(scene, pair, scene.need, sides)).collect()
+        let pairs = |sides: Sides, meter: &mut Meter| -> Result<Vec<TouchingPair>, Exhausted> {
+            let of = |pair: &[u32; 2]| {
+                meter.read_clock()?;
+                Ok(TouchingPair::new(scene, *pair, scene.need, sides))
+            };
+            near.iter().map(of).collect()
         };
-        let outward = pairs(Sides::Outward(oriented));
-        if let Some(exact) = &exact
-            && let Some(pair) = outward.iter().find(|pair| exact.cross(pair))
-        {
-            return Ok(Some(Meeting::Overlapping(Some(pair.triangles))));
+        let outward = pairs(Sides::Outward(oriented), meter)?;
+        for pair in exact.iter().flat_map(|_| &outward) {
+            meter.read_clock()?;
+            if exact.as_ref().is_some_and(|exact| exact.cross(pair)) {
+                return Ok(Some(Meeting::Overlapping(Some(pair.triangles))));
+            }
         }
         if let Some(touch) = self.parted(scene, (&outward, known), exact.as_ref(), meter)? {
             return Ok(Some(Meeting::Touching(touch)));
         }
         // Solids that are inside out part where their faces say the opposite.
-        let any = pairs(Sides::Any);
+        let any = pairs(Sides::Any, meter)?;
         if oriented != [false; 2]
             && let Some(touch) = self.parted(scene, (&any, known), exact.as_ref(), meter)?
         {
@@ -274,7 +279,27 @@ impl<'a> Meeters<'a> {
         exact: Option<&ExactPlaces<'_>>,
         meter: &mut Meter,
     ) -> Result<Option<Touch<'a>>, Exhausted> {
-        for n in directions(pairs, scene.need) {
+        let Directions { found, several } = directions(pairs, scene.need, meter)?;
+        let touch = self.parted_along(&found, scene, (pairs, known), exact, meter)?;
+        // Sought only where the others were not enough.
+        if touch.is_some() || !several {
+            return Ok(touch);
+        }
+        let mixed = mixtures(pairs, meter)?;
+        self.parted_along(&mixed, scene, (pairs, known), exact, meter)
+    }
+
+    /// The first of some directions along which B is proven to part.
+    fn parted_along(
+        &self,
+        tried: &[DVec3],
+        scene: &RestingScene<'_>,
+        (pairs, known): (&[TouchingPair], Near),
+        exact: Option<&ExactPlaces<'_>>,
+        meter: &mut Meter,
+    ) -> Result<Option<Touch<'a>>, Exhausted> {
+        for &n in tried {
+            meter.read_clock()?;
             let rise = pairs.iter().map(|pair| steepest_rise(pair, n)).fold(1.0, f64::min);
             // What is not a number rises nowhere.
             if rise.is_nan() || rise <= LEAST_RISE {
@@ -283,7 +308,7 @@ impl<'a> Meeters<'a> {
             if let Some(exact) = exact {
                 let nearest = nearest_axes(pairs, n);
                 let is_parted = match known {
-                    Near::All => pairs.iter().all(|pair| exact.part_along(pair, &nearest, n, rise)),
+                    Near::All => all(pairs, meter, |pair| exact.part_along(pair, &nearest, n, rise))?,
                     Near::Some => self.may_sign_all(meter) && exact.are_bodies_parted(&nearest, n, rise),
                 };
                 if !is_parted {
@@ -353,6 +378,24 @@ impl<'a> Meeters<'a> {
         }
         Ok(true)
     }
+}
+
+/// Is that so of all pairs?
+///
+/// # Errors
+/// [`Exhausted`]: the time is over.
+fn all(
+    pairs: &[TouchingPair],
+    meter: &mut Meter,
+    holds: impl Fn(&TouchingPair) -> bool,
+) -> Result<bool, Exhausted> {
+    for pair in pairs {
+        meter.read_clock()?;
+        if !holds(pair) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 /// What bodies are put into an order by, so that it does not depend on how they are named.

@@ -5,6 +5,7 @@
 
 use super::axis::{Axis, TouchingPair};
 use super::{FIRST_STEP, LAST_STEP};
+use crate::meter::{Exhausted, Meter};
 use crate::nearest_point::Simplex;
 use glam::DVec3;
 
@@ -21,38 +22,55 @@ pub(super) const LEAST_RISE: f64 = FIRST_STEP / LAST_STEP;
 /// Axes with blurs up to this factor of the least one are as good.
 const AS_GOOD: f64 = 16.0;
 
-/// Directions from A to B that part all pairs to first order, best first.
-pub(super) fn directions(pairs: &[TouchingPair], need: f64) -> impl Iterator<Item = DVec3> {
-    let common = common_axes(pairs, need);
+/// Directions from A to B that part all pairs to first order.
+pub(super) struct Directions {
+    /// Best first.
+    pub(super) found: Vec<DVec3>,
+    /// Does no plane part all? Then [`mixtures`] may be of use.
+    pub(super) several: bool,
+}
+
+/// Those that are found at once.
+///
+/// # Errors
+/// [`Exhausted`]: the time is over.
+pub(super) fn directions(
+    pairs: &[TouchingPair],
+    need: f64,
+    meter: &mut Meter,
+) -> Result<Directions, Exhausted> {
+    let common = common_axes(pairs, need, meter)?;
     // The middle of the cone of directions normal to planes between all of A and all of B, near the contacts.
     let middle = common.iter().fold(DVec3::ZERO, |sum, axis| sum + axis.direction).try_normalize();
     let several = common.is_empty();
-    let of_several = several.then(|| direction_of_several(pairs)).flatten();
-    // Sought only where the others were not enough.
-    let mixed = std::iter::once(()).filter(move |()| several).flat_map(|()| mixtures(pairs));
-    middle.into_iter().chain(common.into_iter().map(|axis| axis.direction)).chain(of_several).chain(mixed)
+    let of_several = if several { direction_of_several(pairs, meter)? } else { None };
+    let found = middle.into_iter().chain(common.into_iter().map(|axis| axis.direction)).chain(of_several);
+    Ok(Directions { found: found.collect(), several })
 }
 
 /// Axes along which no pair overlaps.
-fn common_axes(pairs: &[TouchingPair], need: f64) -> Vec<Axis> {
+fn common_axes(pairs: &[TouchingPair], need: f64, meter: &mut Meter) -> Result<Vec<Axis>, Exhausted> {
     let mut all: Vec<Axis> = Vec::new();
     // An axis that all share is among those of each.
-    let Some(first) = pairs.iter().min_by_key(|pair| pair.axes.len()) else { return all };
-    let shared = |axis: &Axis| pairs.iter().all(|pair| pair.fits(axis, need));
-    for axis in first.axes.iter().filter(|axis| shared(axis)) {
-        add(&mut all, axis);
+    let Some(first) = pairs.iter().min_by_key(|pair| pair.axes.len()) else { return Ok(all) };
+    let mut shared = |axis: &Axis| {
+        meter.read_clock()?;
+        Ok(pairs.iter().all(|pair| pair.fits(axis, need)))
+    };
+    for axis in &first.axes {
+        if shared(axis)? {
+            add(&mut all, axis);
+        }
     }
     // The cone that all share may be narrower than that of one: its rays are across edges of any pair.
-    for pair in pairs {
-        for axis in &pair.axes {
-            if all.len() < MOST_AXES && !all.iter().any(|one| one.is_same(axis)) && shared(axis) {
-                all.push(*axis);
-            }
+    for axis in pairs.iter().flat_map(|pair| &pair.axes) {
+        if all.len() < MOST_AXES && !all.iter().any(|one| one.is_same(axis)) && shared(axis)? {
+            all.push(*axis);
         }
     }
     let least = all.iter().map(|axis| axis.blur).fold(f64::INFINITY, f64::min);
     all.retain(|axis| axis.blur <= AS_GOOD * least);
-    all
+    Ok(all)
 }
 
 /// With this axis, or the better one of the two if it is there.
@@ -66,7 +84,7 @@ fn add(all: &mut Vec<Axis>, axis: &Axis) {
 
 /// Where no plane parts all: the direction that rises from the plane between each pair, as steeply as possible from the one from which it
 /// rises least.
-fn direction_of_several(pairs: &[TouchingPair]) -> Option<DVec3> {
+fn direction_of_several(pairs: &[TouchingPair], meter: &mut Meter) -> Result<Option<DVec3>, Exhausted> {
     let mut of_one: Vec<Axis> = Vec::new();
     for pair in pairs {
         if let Some((only, others)) = pair.axes.split_first()
@@ -77,24 +95,31 @@ fn direction_of_several(pairs: &[TouchingPair]) -> Option<DVec3> {
     }
     let mut needed: Vec<DVec3> = of_one.iter().map(|axis| axis.direction).collect();
     if needed.is_empty() {
-        needed.push(pairs.first()?.axes.first()?.direction);
+        needed.extend(pairs.first().and_then(|pair| pair.axes.first()).map(|axis| axis.direction));
     }
     for _ in 0..MOST_ROUNDS {
-        let n = steepest(&needed)?;
+        meter.read_clock()?;
+        let Some(n) = steepest(&needed) else { return Ok(None) };
         let rise = |pair: &&TouchingPair| steepest_rise(pair, n);
-        let worst = pairs.iter().min_by(|x, y| rise(x).total_cmp(&rise(y)))?;
+        let Some(worst) = pairs.iter().min_by(|x, y| rise(x).total_cmp(&rise(y))) else { return Ok(None) };
         if rise(&worst) > LEAST_RISE {
-            return Some(n);
+            return Ok(Some(n));
         }
-        let best = worst.axes.iter().max_by(|x, y| x.direction.dot(n).total_cmp(&y.direction.dot(n)))?;
+        let rises = |axis: &&Axis| axis.direction.dot(n);
+        let Some(best) = worst.axes.iter().max_by(|x, y| rises(x).total_cmp(&rises(y))) else {
+            return Ok(None);
+        };
         needed.push(best.direction);
     }
-    None
+    Ok(None)
 }
 
 /// Where a pair may part along one of several axes, the direction that rises steeply from one of each need not be near those that
 /// rise most from the pairs before: sums of up to three axes of the pairs, the steepest first.
-fn mixtures(pairs: &[TouchingPair]) -> Vec<DVec3> {
+///
+/// # Errors
+/// [`Exhausted`]: the time is over.
+pub(super) fn mixtures(pairs: &[TouchingPair], meter: &mut Meter) -> Result<Vec<DVec3>, Exhausted> {
     let mut axes: Vec<Axis> = Vec::new();
     for axis in pairs.iter().flat_map(|pair| &pair.axes) {
         if axes.len() < MOST_MIXED || axes.iter().any(|one| one.is_same(axis)) {
@@ -103,27 +128,29 @@ fn mixtures(pairs: &[TouchingPair]) -> Vec<DVec3> {
     }
     let mut found: Vec<(f64, DVec3)> = Vec::new();
     let mut consider = |sum: DVec3| {
-        let Some(n) = sum.try_normalize() else { return };
+        let Some(n) = sum.try_normalize() else { return Ok(()) };
+        meter.read_clock()?;
         let mut rise = f64::INFINITY;
         for pair in pairs {
             rise = rise.min(steepest_rise(pair, n));
             if rise <= LEAST_RISE {
-                return;
+                return Ok(());
             }
         }
         found.push((rise, n));
+        Ok(())
     };
     let at = |k: usize| axes[k].direction;
     for i in 0..axes.len() {
-        consider(at(i));
+        consider(at(i))?;
         for j in 0..i {
-            consider(at(i) + at(j));
-            (0..j).for_each(|k| consider(at(i) + at(j) + at(k)));
+            consider(at(i) + at(j))?;
+            (0..j).try_for_each(|k| consider(at(i) + at(j) + at(k)))?;
         }
     }
     found.sort_by(|x, y| y.0.total_cmp(&x.0));
     found.truncate(MOST_TRIED);
-    found.into_iter().map(|(_, n)| n).collect()
+    Ok(found.into_iter().map(|(_, n)| n).collect())
 }
 
 /// How steeply the direction rises from the plane between two triangles that it leaves best: a sine.
@@ -142,4 +169,24 @@ fn steepest(directions: &[DVec3]) -> Option<DVec3> {
     }
     let nearest = simplex.nearest();
     (nearest.length() > LEAST_RISE).then(|| nearest.normalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Budget, Canceller};
+
+    /// Nothing is sought when the time is over: thousands of pairs of triangles that touch would take a second.
+    #[test]
+    fn directions_are_sought_for_as_long_as_there_is_time() {
+        let canceller = Canceller::new();
+        let mut meter = Meter::new(&Budget::UNLIMITED.with_cancel(canceller.flag()));
+        let pairs = [TouchingPair::along(&[DVec3::X, DVec3::Y])];
+        assert!(!directions(&pairs, 1e-12, &mut meter).unwrap().found.is_empty());
+        assert!(!mixtures(&pairs, &mut meter).unwrap().is_empty());
+        canceller.cancel();
+        assert!(directions(&pairs, 1e-12, &mut meter).is_err());
+        assert!(mixtures(&pairs, &mut meter).is_err());
+        assert!(direction_of_several(&pairs, &mut meter).is_err());
+    }
 }
