@@ -2,7 +2,7 @@
 
 use crate::body::{Damping, Groups, Kind};
 use crate::held::Held;
-use crate::numbers::{Numbers, is_small, is_turn};
+use crate::numbers::{Numbers, UNUSABLE, is_small, is_turn};
 use crate::quiet::Quiet;
 use crate::rigid_body::{RigidBody, Role, Target};
 use crate::shown::{shown, shown_turn};
@@ -124,6 +124,7 @@ impl BodyState {
             body: own.name.to_string(),
             name,
             value,
+            reason: UNUSABLE,
         };
         self.check_numbers(own, now)?;
         let motion = self.held.0.as_ref().and_then(|held| held.motion.clone());
@@ -190,7 +191,7 @@ impl BodyState {
 
     fn check_numbers(&self, own: &RigidBody, now: f64) -> Result<(), SimulationError> {
         let bad = |name: &'static str, value: String| {
-            Err(SimulationError::BadBody { body: own.name.to_string(), name, value })
+            Err(SimulationError::BadBody { body: own.name.to_string(), name, value, reason: UNUSABLE })
         };
         let numbers = Numbers {
             body: &own.name,

@@ -1,5 +1,6 @@
 //! Bodies of several meshes.
 
+use crate::numbers::UNUSABLE;
 use crate::shown::{shown, shown_turn};
 use crate::{Body, Mass, MassProperties, SimulationError};
 use d2m_bvh::{MeshTree, TriMesh};
@@ -64,6 +65,7 @@ impl Body {
             body: "of several parts".to_owned(),
             name,
             value,
+            reason: UNUSABLE,
         };
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
         let mut masses = Vec::new();

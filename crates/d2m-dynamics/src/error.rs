@@ -35,7 +35,7 @@ pub enum SimulationError {
         wanted: &'static str,
     },
     /// A number of a body that is not finite, negative where it must not be, or a quaternion without direction.
-    #[error("body {body}: {name} {value} cannot be used")]
+    #[error("body {body}: {name} {value} {reason}")]
     BadBody {
         /// The body's name.
         body: String,
@@ -43,9 +43,11 @@ pub enum SimulationError {
         name: &'static str,
         /// The refused value, as text.
         value: String,
+        /// What it has to be, or that it cannot be used.
+        reason: &'static str,
     },
     /// A joint that cannot be made.
-    #[error("joint of {a} and {b}: {name} {value} cannot be used")]
+    #[error("joint of {a} and {b}: {name} {value} {reason}")]
     BadJoint {
         /// The first body's name.
         a: String,
@@ -55,9 +57,11 @@ pub enum SimulationError {
         name: &'static str,
         /// The refused value, as text.
         value: String,
+        /// What it has to be, or that it cannot be used.
+        reason: &'static str,
     },
     /// A number of what a snapshot keeps of a pair of bodies, as the impulse of a contact.
-    #[error("pair of {a} and {b}: {name} {value} cannot be used")]
+    #[error("pair of {a} and {b}: {name} {value} {reason}")]
     BadPair {
         /// The first body's name.
         a: String,
@@ -67,6 +71,8 @@ pub enum SimulationError {
         name: &'static str,
         /// The refused value, as text.
         value: String,
+        /// What it has to be, or that it cannot be used.
+        reason: &'static str,
     },
     /// Mass properties.
     #[error("body {body}: {error}")]

@@ -3,7 +3,7 @@
 use crate::SimulationError;
 use crate::contact::{ContactPoint, JointRow, Law, Material, tangents};
 use crate::joint::{Joint, JointKind, MotorTarget};
-use crate::numbers::is_small;
+use crate::numbers::{FINITE, NOT_NEGATIVE, UNUSABLE, is_small};
 use crate::rigid_body::RigidBody;
 use crate::shown::{shown, shown_turn};
 use crate::turning::rotation_vector;
@@ -47,7 +47,13 @@ impl Joined {
     ) -> Result<Self, SimulationError> {
         let [a, b] = places.map(|i| &bodies[i]);
         let bad = |name: &'static str, value: String| {
-            Err(SimulationError::BadJoint { a: a.name.to_string(), b: b.name.to_string(), name, value })
+            Err(SimulationError::BadJoint {
+                a: a.name.to_string(),
+                b: b.name.to_string(),
+                name,
+                value,
+                reason: UNUSABLE,
+            })
         };
         Self::check_numbers(joint, [a, b])?;
         let axis = joint.axis.normalize_or_zero();
@@ -73,18 +79,19 @@ impl Joined {
 
     /// The numbers of a joint of these bodies, given or read.
     fn check_numbers(joint: &Joint, [a, b]: [&RigidBody; 2]) -> Result<(), SimulationError> {
-        let bad = |name: &'static str, value: String| {
-            Err(SimulationError::BadJoint { a: a.name.to_string(), b: b.name.to_string(), name, value })
+        let bad = |name: &'static str, value: String, reason: &'static str| {
+            let [a, b] = [a, b].map(|body| body.name.to_string());
+            Err(SimulationError::BadJoint { a, b, name, value, reason })
         };
         if !joint.point.is_finite() {
-            return bad("point", shown(joint.point.to_array()));
+            return bad("point", shown(joint.point.to_array()), FINITE);
         }
         if !joint.axis.is_finite() || joint.axis.normalize_or_zero() == DVec3::ZERO {
-            return bad("axis", shown(joint.axis.to_array()));
+            return bad("axis", shown(joint.axis.to_array()), "has no direction");
         }
         if let Some(limits) = joint.limits.filter(|[lo, hi]| !(lo.is_finite() && hi.is_finite() && lo <= hi))
         {
-            return bad("limits", format!("{limits:?}"));
+            return bad("limits", format!("{limits:?}"), "must be finite, the lower one first");
         }
         let motor = joint.motor.iter().flat_map(|motor| {
             let (MotorTarget::Velocity(aim) | MotorTarget::Position(aim)) = motor.target;
@@ -106,7 +113,7 @@ impl Joined {
         let numbers = motor.chain(spring).chain([("friction", joint.friction)]);
         for (name, value) in numbers {
             if !(value.is_finite() && value >= 0.0) {
-                return bad(name, shown([value]));
+                return bad(name, shown([value]), NOT_NEGATIVE);
             }
         }
         Ok(())
@@ -128,7 +135,13 @@ impl Joined {
             (!is_small(DVec3::splat(self.value))).then(|| ("value", shown([self.value])))
         };
         fault.map_or(Ok(()), |(name, value)| {
-            Err(SimulationError::BadJoint { a: a.name.to_string(), b: b.name.to_string(), name, value })
+            Err(SimulationError::BadJoint {
+                a: a.name.to_string(),
+                b: b.name.to_string(),
+                name,
+                value,
+                reason: UNUSABLE,
+            })
         })
     }
 

@@ -2,7 +2,7 @@
 
 use crate::body::{Damping, Groups, Kind};
 use crate::contact::Material;
-use crate::numbers::{Fault, material_fault};
+use crate::numbers::{FINITE, Fault, UNUSABLE, material_fault};
 use crate::rigid_body::{RigidBody, Target};
 use crate::shown::{shown, shown_turn};
 use crate::velocity::Velocity;
@@ -42,8 +42,12 @@ impl Simulation {
     pub fn set_pose(&mut self, body: BodyId, pose: Pose) -> Result<(), SimulationError> {
         let place = self.place(body);
         let own = &self.bodies[place];
-        let bad =
-            |value: String| SimulationError::BadBody { body: own.name.to_string(), name: "pose", value };
+        let bad = |value: String| SimulationError::BadBody {
+            body: own.name.to_string(),
+            name: "pose",
+            value,
+            reason: UNUSABLE,
+        };
         if own.is_kinematic() {
             return Err(bad(format!(
                 "{} of a body that follows its motion",
@@ -221,7 +225,7 @@ impl Simulation {
         if !velocity.is_finite() {
             let body = self.bodies[place].name.to_string();
             let (name, value) = ("surface velocity", shown(velocity.to_array()));
-            return Err(SimulationError::BadBody { body, name, value });
+            return Err(SimulationError::BadBody { body, name, value, reason: FINITE });
         }
         self.bodies[place].surface_velocity = velocity;
         self.drop_known(place);
@@ -410,7 +414,7 @@ impl Simulation {
 }
 
 fn check_material(restitution: f64, friction: f64) -> Result<(), SimulationError> {
-    material_fault(restitution, friction).map_or(Ok(()), |Fault { name, value, wanted }| {
+    material_fault(restitution, friction).map_or(Ok(()), |Fault { name, value, wanted, .. }| {
         Err(SimulationError::BadOption { name, value, wanted })
     })
 }

@@ -10,6 +10,11 @@ pub(crate) const LARGEST: f64 = 1e100;
 /// operations of relative error 2⁻⁵³ each, turns it. Half of that in its length is less than bounds of flights allow for.
 const UNIT: f64 = 32.0 * f64::EPSILON;
 
+/// Of numbers of which nothing more is said.
+pub(crate) const UNUSABLE: &str = "cannot be used";
+pub(crate) const FINITE: &str = "must be finite";
+pub(crate) const NOT_NEGATIVE: &str = "must be finite and not negative";
+
 /// Numbers of a body.
 pub(crate) struct Numbers<'n> {
     /// The body's name.
@@ -24,22 +29,22 @@ pub(crate) struct Numbers<'n> {
 
 impl Numbers<'_> {
     pub(crate) fn check(&self) -> Result<(), SimulationError> {
-        let bad = |name: &'static str, value: String| {
-            Err(SimulationError::BadBody { body: self.body.to_owned(), name, value })
+        let bad = |name: &'static str, value: String, reason: &'static str| {
+            Err(SimulationError::BadBody { body: self.body.to_owned(), name, value, reason })
         };
         if let Some((name, value)) = self.vectors.iter().find(|(_, v)| !v.is_finite()) {
-            return bad(name, shown(value.to_array()));
+            return bad(name, shown(value.to_array()), FINITE);
         }
         let norm = self.orientation.length();
         if !(norm.is_finite() && norm > 0.0) {
-            return bad("orientation", shown_turn(self.orientation));
+            return bad("orientation", shown_turn(self.orientation), "has no direction");
         }
-        if let Some(Fault { name, value, .. }) = material_fault(self.restitution, self.friction) {
-            return bad(name, shown([value]));
+        if let Some(Fault { name, value, reason, .. }) = material_fault(self.restitution, self.friction) {
+            return bad(name, shown([value]), reason);
         }
         for (name, value) in self.not_negative {
             if !(value.is_finite() && *value >= 0.0) {
-                return bad(name, shown([*value]));
+                return bad(name, shown([*value]), NOT_NEGATIVE);
             }
         }
         Ok(())
@@ -50,16 +55,29 @@ impl Numbers<'_> {
 pub(crate) struct Fault {
     pub(crate) name: &'static str,
     pub(crate) value: f64,
+    /// Behind "must be finite and".
     pub(crate) wanted: &'static str,
+    /// The same as a sentence.
+    pub(crate) reason: &'static str,
 }
 
 /// A restitution outside [0, 1], a friction that is negative or not finite.
 pub(crate) fn material_fault(restitution: f64, friction: f64) -> Option<Fault> {
     if !(0.0..=1.0).contains(&restitution) {
-        return Some(Fault { name: "restitution", value: restitution, wanted: "in [0, 1]" });
+        return Some(Fault {
+            name: "restitution",
+            value: restitution,
+            wanted: "in [0, 1]",
+            reason: "must be in [0, 1]",
+        });
     }
     let is_friction = friction.is_finite() && friction >= 0.0;
-    (!is_friction).then_some(Fault { name: "friction", value: friction, wanted: "not negative" })
+    (!is_friction).then_some(Fault {
+        name: "friction",
+        value: friction,
+        wanted: "not negative",
+        reason: NOT_NEGATIVE,
+    })
 }
 
 /// Is it finite, and no component greater than [`LARGEST`]?

@@ -5,7 +5,7 @@ use crate::clearance::Clearance;
 use crate::contact::{ContactPoint, Material, tangents};
 use crate::held::{Held, Source};
 use crate::momenta::Momenta;
-use crate::numbers::{is_small, is_turn, is_unit, material_fault};
+use crate::numbers::{UNUSABLE, is_small, is_turn, is_unit, material_fault};
 use crate::pairs::{Attempts, Pair, distance_of};
 use crate::rigid_body::{RigidBody, Target};
 use crate::shown::shown;
@@ -83,7 +83,7 @@ impl PairState {
     pub(crate) fn restored(&self, bodies: [&RigidBody; 2], source: Source) -> Result<Pair, SimulationError> {
         if let Some((name, value)) = self.fault() {
             let [a, b] = bodies.map(|body| body.name.to_string());
-            return Err(SimulationError::BadPair { a, b, name, value });
+            return Err(SimulationError::BadPair { a, b, name, value, reason: UNUSABLE });
         }
         let mut cache = match source {
             Source::Held => self.cache.0.clone().unwrap_or_default(),

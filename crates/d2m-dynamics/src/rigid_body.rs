@@ -4,7 +4,7 @@ use crate::body::{Body, BodyId, Damping, Groups, Kind, Mass, Presence};
 use crate::faces::Faces;
 use crate::hollow::{bores, cavity};
 use crate::momenta::Momenta;
-use crate::numbers::{Numbers, is_small};
+use crate::numbers::{Numbers, UNUSABLE, is_small};
 use crate::quiet::Quiet;
 use crate::shown::shown;
 use crate::turning::{Pull, extreme_eigenvalues};
@@ -120,6 +120,7 @@ impl RigidBody {
             body: body.name.clone(),
             name,
             value,
+            reason: UNUSABLE,
         };
         let vectors = [
             ("position", body.position),

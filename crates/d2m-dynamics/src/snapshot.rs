@@ -205,9 +205,9 @@ impl Simulation {
         next.materials.clear();
         for pair in snapshot.materials.iter().filter(|pair| is_whole(&pair.bodies)) {
             let &PairMaterial { bodies: [a, b], restitution, friction } = pair;
-            if let Some(Fault { name, value, .. }) = material_fault(restitution, friction) {
+            if let Some(Fault { name, value, reason, .. }) = material_fault(restitution, friction) {
                 let [a, b] = [a, b].map(|place| next.bodies[place].name.to_string());
-                return Err(SimulationError::BadPair { a, b, name, value: shown([value]) });
+                return Err(SimulationError::BadPair { a, b, name, value: shown([value]), reason });
             }
             next.materials.insert((a, b), Material { restitution, friction });
         }

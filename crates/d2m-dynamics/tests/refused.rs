@@ -81,7 +81,7 @@ fn messages_name_what_was_given() {
     let said = MassProperties::try_new(1.0, DVec3::ZERO, skew).unwrap_err().to_string();
     assert!(said.contains("[[1.0, 0.5, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]"), "{said}");
     let lively = refused(&cube().with_restitution(1e300));
-    assert_eq!(lively, "body cube: restitution 1e300 cannot be used");
+    assert_eq!(lively, "body cube: restitution 1e300 must be in [0, 1]");
     let fast = refused(&cube().with_linear_velocity(DVec3::X * 1e300));
     assert!(fast.contains("velocity [1e300, 0.0, 0.0] is too large"), "{fast}");
     let mut simulation = empty();
@@ -89,6 +89,23 @@ fn messages_name_what_was_given() {
     let nothing = Joint::new(JointKind::Fixed, id, None, DVec3::ZERO);
     let said = simulation.add_joint(&nothing).unwrap_err().to_string();
     assert!(said.contains("pair without a dynamic body, or of a body with itself, cannot be used"), "{said}");
+    // What it has to be is said, where one sentence can say it.
+    assert_eq!(
+        refused(&cube().with_friction(-1.0)),
+        "body cube: friction -1.0 must be finite and not negative"
+    );
+    let still = refused(&cube().with_linear_velocity(DVec3::new(f64::INFINITY, 0.0, 0.0)));
+    assert_eq!(still, "body cube: velocity [inf, 0.0, 0.0] must be finite");
+    let id = simulation.add(&cube().with_position(DVec3::X * 9.0)).unwrap();
+    let hinge = Joint::new(JointKind::Revolute, id, None, DVec3::ZERO);
+    for (joint, wanted) in [
+        (hinge.clone().with_axis(DVec3::ZERO), "axis [0.0, 0.0, 0.0] has no direction"),
+        (hinge.clone().with_limits([1.0, -1.0]), "limits [1.0, -1.0] must be finite, the lower one first"),
+        (hinge.clone().with_friction(-1.0), "friction -1.0 must be finite and not negative"),
+    ] {
+        let said = simulation.add_joint(&joint).unwrap_err().to_string();
+        assert!(said.ends_with(wanted), "{said}");
+    }
 }
 
 #[test]
