@@ -270,6 +270,20 @@ fn meshes_of_every_kind_and_back() {
         assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
         assert!(stdout(&run).contains("\"solid\":true"), "watertight: {}", stdout(&run));
     }
+    // A glTF file is in meters: another unit is taken, and said.
+    let run = d2m(&["info", &glb, "--unit", "mm"]);
+    assert!(
+        stderr(&run).contains("g.glb: the file states a unit of 1 m; its numbers are taken as mm"),
+        "{}",
+        stderr(&run)
+    );
+    assert!(
+        stdout(&run).contains("\n  unit        mm, as the option says: read as meters\n"),
+        "{}",
+        stdout(&run)
+    );
+    let run = d2m(&["toc", &glb, &obj, "--unit-a", "m", "--unit-b", "mm"]);
+    assert!(!stderr(&run).contains("states a unit"), "{}", stderr(&run));
     let off = folder.file("t.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     assert!(stdout(&d2m(&["info", &off])).contains("triangles   1\n"));
     let dae = folder

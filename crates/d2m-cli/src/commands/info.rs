@@ -87,7 +87,9 @@ fn mesh_text(body: &Loaded, validation: &Validation, parts: &MeshParts) -> Strin
     if let Precision::Single(kind) = body.report.precision {
         line("precision", format!("single: a {kind} holds no more than 24 bits of each coordinate"));
     }
-    if let Some(meters) = body.report.meters_per_unit.filter(|meters| *meters != 1.0) {
+    if let Some(unit) = body.unit {
+        line("unit", format!("{}, as the option says: read as meters", unit.symbol()));
+    } else if let Some(meters) = body.report.meters_per_unit.filter(|meters| *meters != 1.0) {
         line("unit", format!("{} m in the file: read as meters", short(meters)));
     }
     if let Some(axis @ (UpAxis::X | UpAxis::Y)) = body.report.up_axis {

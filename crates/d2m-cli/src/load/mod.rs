@@ -5,10 +5,10 @@ mod bytes;
 pub(crate) use bytes::{named, read};
 
 use crate::failure::Failure;
-use crate::output::progress_bar;
+use crate::output::{note, progress_bar, short};
 use d2m::bvh::{MeshTree, TriMesh};
 use d2m::shapes::{self, SHAPES};
-use d2m_io::{MeshFormat, MeshReport, ReadMesh, ReadOptions, read_mesh_with};
+use d2m_io::{MeshFormat, MeshReport, ReadMesh, ReadOptions, Unit, read_mesh_with};
 use std::path::Path;
 
 /// A mesh with the name that the user gave it, and how it was read.
@@ -16,6 +16,8 @@ use std::path::Path;
 pub(crate) struct Loaded {
     pub(crate) name: String,
     pub(crate) report: MeshReport,
+    /// The unit that the user gave for its numbers.
+    pub(crate) unit: Option<Unit>,
     geometry: Geometry,
 }
 
@@ -37,7 +39,7 @@ impl Geometry {
 
 impl Loaded {
     fn exact(name: String, geometry: Geometry) -> Self {
-        Self { name, report: MeshReport::default(), geometry }
+        Self { name, report: MeshReport::default(), unit: None, geometry }
     }
 
     /// The mesh, as it is numbered in its file.
@@ -80,7 +82,7 @@ pub(crate) fn load_with(source: &str, options: &ReadOptions) -> Result<Loaded, F
     let resized = |mesh: TriMesh| options.apply(mesh).map_err(|error| Failure::at(source, error));
     if let Some(text) = source.strip_prefix("shape:") {
         let mesh = shapes::mesh(text).map_err(|error| Failure::Input(error.to_string()))?;
-        return Ok(Loaded::exact(name, Geometry::Mesh(resized(mesh)?)));
+        return Ok(Loaded { unit: options.unit, ..Loaded::exact(name, Geometry::Mesh(resized(mesh)?)) });
     }
     let path = Path::new(source);
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("d2mtree")) {
@@ -90,7 +92,7 @@ pub(crate) fn load_with(source: &str, options: &ReadOptions) -> Result<Loaded, F
         } else {
             Geometry::Mesh(resized(tree.into_mesh())?)
         };
-        return Ok(Loaded::exact(name, geometry));
+        return Ok(Loaded { unit: options.unit, ..Loaded::exact(name, geometry) });
     }
     if MeshFormat::from_path(path).is_none() {
         let hint = match source.split('?').next() {
@@ -107,5 +109,13 @@ pub(crate) fn load_with(source: &str, options: &ReadOptions) -> Result<Loaded, F
         return Err(Failure::at(source, format!("unknown kind of mesh: {expected}{hint}")));
     }
     let ReadMesh { mesh, report } = read_mesh_with(path, options)?;
-    Ok(Loaded { name, report, geometry: Geometry::Mesh(mesh) })
+    if let (Some(unit), Some(stated)) = (options.unit, report.meters_per_unit)
+        && unit.to_meters(1.0) != stated
+    {
+        let (symbol, stated) = (unit.symbol(), short(stated));
+        note(&format!(
+            "d2m: warning: {source}: the file states a unit of {stated} m; its numbers are taken as {symbol} all the same"
+        ));
+    }
+    Ok(Loaded { name, report, unit: options.unit, geometry: Geometry::Mesh(mesh) })
 }
