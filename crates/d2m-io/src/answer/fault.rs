@@ -16,6 +16,9 @@ use glam::DVec3;
 /// let spinning: ConstantTwist = "w=0,0,2e12".parse()?;
 /// let fault = d2m_io::query_fault(&QueryError::BadMotion { body: 0 }, [&spinning, &rest], Window::UNIT);
 /// assert!(fault.ends_with("over the window it turns by 2000000000000 radians: 2^40 and more are refused"), "{fault}");
+/// let fast: ConstantTwist = "v=1e300,0,0".parse()?;
+/// let fault = d2m_io::query_fault(&QueryError::BadMotion { body: 0 }, [&fast, &rest], Window::UNIT);
+/// assert!(fault.contains("over the window it goes 1e300: doubles cannot place it so far away"), "{fault}");
 /// # Ok::<(), d2m_motion::MotionError>(())
 /// ```
 pub fn query_fault(error: &QueryError, motions: [&dyn RigidMotion; 2], window: Window) -> String {
@@ -41,14 +44,21 @@ fn reason(motion: &dyn RigidMotion, window: Window) -> String {
     let Some(twist) = motion.constant_twist() else {
         return "over the window it is not finite, turns by 2^40 radians, goes too far, or spins so slowly that the speed is lost to underflow; or its rounding exceeds the bodies".to_owned();
     };
-    let [way, turn] =
-        [twist.linear_velocity(), twist.angular_velocity()].map(|v| v.length() * window.length());
-    let [way_text, turn_text] = [way, turn].map(short_number);
+    let over_window = |rate: DVec3| {
+        let most = rate.abs().max_element();
+        // Divided first, so that no square exceeds all numbers.
+        if most > 0.0 { (rate / most).length() * most * window.length() } else { 0.0 }
+    };
+    let [way, turn] = [twist.linear_velocity(), twist.angular_velocity()].map(over_window);
+    let (way, turn_text) = (short_number(way), short_number(turn));
+    let far = "doubles cannot place it so far away, beside bodies of these sizes";
     if turn >= MOST_TURN {
         format!("over the window it turns by {turn_text} radians: 2^40 and more are refused")
+    } else if turn == 0.0 {
+        format!("over the window it goes {way}: {far}")
     } else {
         format!(
-            "over the window it goes {way_text} and turns by {turn_text} radians: doubles cannot place it so far away, beside bodies of these sizes, or its spin is so slow that it is lost to underflow"
+            "over the window it goes {way} and turns by {turn_text} radians: {far}, or its spin is so slow that it is lost to underflow"
         )
     }
 }
