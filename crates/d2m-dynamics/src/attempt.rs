@@ -24,6 +24,8 @@ const AIM: f64 = 1e-3;
 const STILL: f64 = 0.05;
 /// Of bodies that move, this part of their speed, too.
 const RELATIVE: f64 = 1.0 / 1024.0;
+/// Where contacts share what room is left, so much less: what is left of solutions is taken from the same contacts again and again.
+const SHARED: f64 = 1.0 / 64.0;
 /// Solutions with the spin of the flight's middle put right.
 const CORRECTIONS: u32 = 3;
 /// Of crowds, whose solutions are less exact than that.
@@ -196,7 +198,8 @@ impl Problem<'_> {
         let precision = PRECISION * options.gap / options.step;
         let slow = span.resting_speed.max(options.gap / options.step);
         let company = self.company;
-        let mut accuracy = Accuracy { precision, relative: RELATIVE, aim: AIM, slow, company, still: None };
+        let relative = if room == Room::Shared { RELATIVE * SHARED } else { RELATIVE };
+        let mut accuracy = Accuracy { precision, relative, aim: AIM, slow, company, still: None };
         let pushing: Vec<f64> = rows.iter().map(|row| row.pushing).collect();
         let spins: Vec<DVec3> = free.iter().map(|body| body.velocity.angular).collect();
         let velocities = |c: &ContactPoint| [c.a, c.b].map(|body| free[place(body)].velocity);

@@ -31,9 +31,12 @@ const LOCKED: f64 = 0.5;
 /// The part of the bodies' speed that solutions may leave in any case.
 const OF_SPEED: f64 = 1.0 / 16.0;
 /// How much longer than a flight that bodies at rest would survive one is that is tried first, a power of two: what closes in
-/// from one side may be passed on through so many contacts.
+/// from one side may be passed on through so many contacts. And how often that is halved, down to such a flight.
 const PASSED_ON: f64 = 64.0;
 const SHORTENED: u32 = 6;
+/// And twice more where bodies could not give way without friction either: in the shortest flights bodies at rest use up a quarter of their room, since
+/// solutions are inexact where they have nothing to spare. What friction alone holds would lock for as long as that.
+const SHORTER: u32 = 2;
 
 /// When and how long.
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +51,17 @@ pub(crate) struct Clock {
 struct Closing {
     rate: f64,
     safe: f64,
+}
+
+/// What solutions may leave.
+#[derive(Clone, Copy)]
+struct Leaves {
+    /// What others do. It comes from the same contact in one flight after the other, until that has no room where the others have some.
+    usual: f64,
+    /// No velocities obey the law if they leave more.
+    most: f64,
+    /// No faster than this become bodies by less than the most: what is driven out would be thrown.
+    fastest: f64,
 }
 
 /// What friction does where it is in the way of what could move without it.
@@ -100,7 +114,8 @@ impl Problem<'_> {
         let rate = closing.map_or(0.0, |closing| closing.rate);
         // Where no velocities obey the law the nearest ones may be as large as normals are askew: no faster than bodies were, or are driven.
         let speed = |s: &Cow<'_, RigidBody>| s.present_velocity().surface_speed(s.radius);
-        let speed = tried.system.mean_speed().min(moved().map(speed).fold(rate, f64::max));
+        let fastest = moved().map(speed).fold(rate, f64::max);
+        let speed = tried.system.mean_speed().min(fastest);
         let left = LEFT_OVER * tried.system.left(tried.accuracy);
         let most = left.max(OF_SPEED * speed).max(UNSOLVED * rate);
         let is_cramped = !tried.may_last();
@@ -112,7 +127,14 @@ impl Problem<'_> {
             Some(closing) if tried.found.residual >= LOCKED * closing.rate => Friction::Locks,
             _ => Friction::Slips,
         };
-        self.squeezed([now, end], closing, most, friction).unwrap_or(tried)
+        let leaves = Leaves { usual: left, most, fastest: fastest.max(self.speed()) };
+        self.squeezed([now, end], closing, leaves, friction).unwrap_or(tried)
+    }
+
+    /// The speed of the fastest point of a body.
+    fn fastest(&self, attempt: &Attempt) -> f64 {
+        let bodies = self.states.iter().zip(&attempt.system.bodies).filter(|(s, _)| moves(s));
+        bodies.map(|(s, body)| body.velocity.surface_speed(s.radius)).fold(0.0, f64::max)
     }
 
     /// The bodies of closed chains as one, where their joints cannot be met at the end of a flight, nor of one half as long, because what pulls
@@ -148,38 +170,43 @@ impl Problem<'_> {
     }
 
     /// The longest flights, of some lengths, in which contacts close by no more than the room that they share, and solutions leave no more
-    /// than `most`. If friction allows none, without: it can only hold what room there is. Where all is possible without friction, only what
+    /// than usual; or than the most, if there are none or they make bodies too fast. If friction allows none, without: it can only hold what room there is. Where all is possible without friction, only what
     /// that locks shares room, as between wedges, and slips where hardly any is left: it crushes nothing by itself.
     fn squeezed(
         &self,
         [now, end]: [f64; 2],
         closing: Option<Closing>,
-        most: f64,
+        leaves: Leaves,
         friction: Friction,
     ) -> Option<Attempt> {
         let contacts: Vec<ContactPoint> = self.contacts.iter().map(ContactPoint::without_friction).collect();
         let smooth = Problem { contacts: &contacts, ..*self };
         let slipping = smooth.attempt(now, end, Room::Kept);
-        let obeys = |attempt: &Attempt| attempt.found.residual <= most && attempt.may_last();
-        let is_possible = obeys(&slipping);
+        let obeys = |attempt: &Attempt, most: f64| attempt.found.residual <= most && attempt.may_last();
+        let is_possible = obeys(&slipping, leaves.most);
         match friction {
             Friction::Slips if is_possible => return None,
             Friction::GivesWay if is_possible => return Some(slipping),
             _ => {}
         }
         let Closing { safe, .. } = closing?;
-        let lengths = (0..=SHORTENED).map(|k| PASSED_ON * safe / f64::from(1u32 << k));
+        let shortened = if is_possible { SHORTENED } else { SHORTENED + SHORTER };
+        let lengths = (0..=shortened).map(|k| PASSED_ON * safe / f64::from(1u32 << k));
         let ends = lengths.map(|length| if length < end - now { now + length } else { end });
         let ends: Vec<f64> = ends.filter(|&until| until > now).collect();
-        let shared = |problem: &Problem<'_>, until: f64| {
-            Some(problem.attempt(now, until, Room::Shared)).filter(|attempt| obeys(attempt))
+        let found = |most: f64| {
+            let shared = |problem: &Problem<'_>, until: f64| {
+                Some(problem.attempt(now, until, Room::Shared)).filter(|attempt| obeys(attempt, most))
+            };
+            if friction == Friction::GivesWay {
+                // With friction, as long as that has flights no shorter than without.
+                return longest(&ends, |until| shared(self, until).or_else(|| shared(&smooth, until)));
+            }
+            let of = |problem: &Problem<'_>| longest(&ends, |until| shared(problem, until));
+            of(self).or_else(|| if is_possible { None } else { of(&smooth) })
         };
-        if friction == Friction::GivesWay {
-            // With friction, as long as that has flights no shorter than without.
-            return longest(&ends, |until| shared(self, until).or_else(|| shared(&smooth, until)));
-        }
-        let of = |problem: &Problem<'_>| longest(&ends, |until| shared(problem, until));
-        of(self).or_else(|| if is_possible { None } else { of(&smooth) })
+        let usual = found(leaves.usual).filter(|attempt| self.fastest(attempt) <= leaves.fastest);
+        usual.or_else(|| found(leaves.most))
     }
 
     /// A gap in a step.
