@@ -44,7 +44,7 @@
 //! [`QueryError`], [`MeshError`], [`TreeError`], [`TreeFileError`]: bad input, with index and value. Hard
 //! cases are no errors.
 //!
-//! Vectors and quaternions are those of [`glam`], in the version that is given out here.
+//! Vectors and quaternions are those of [`glam`](https://docs.rs/glam), in the version that is given out here.
 #![doc(html_root_url = "https://docs.rs/d2m-bvh")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]

@@ -24,7 +24,7 @@
 //! ## Errors
 //! [`SimulationError`] and [`MassError`]: bad input. [`StepError`]: why a simulation cannot go on.
 //!
-//! Vectors and quaternions are those of [`glam`], in the version that is given out here.
+//! Vectors and quaternions are those of [`glam`](https://docs.rs/glam), in the version that is given out here.
 #![doc(html_root_url = "https://docs.rs/d2m-dynamics")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]

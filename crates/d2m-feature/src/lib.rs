@@ -27,7 +27,7 @@
 //! - [`proven_crossing`]: of triangles whose vertices are known up to an error.
 //! - [`triangles_intersect`], [`orient2d`], [`orient3d`], [`triple_product_sign`]: exact.
 //!
-//! Vectors and quaternions are those of [`glam`], in the version that is given out here.
+//! Vectors and quaternions are those of [`glam`](https://docs.rs/glam), in the version that is given out here.
 #![doc(html_root_url = "https://docs.rs/d2m-feature")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]

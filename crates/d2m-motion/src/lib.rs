@@ -37,7 +37,7 @@
 //! ## Errors
 //! [`MotionError`]: a description that was refused. [`OutsideDomain`]: times that a motion does not cover.
 //!
-//! Vectors and quaternions are those of [`glam`], in the version that is given out here.
+//! Vectors and quaternions are those of [`glam`](https://docs.rs/glam), in the version that is given out here.
 #![doc(html_root_url = "https://docs.rs/d2m-motion")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]

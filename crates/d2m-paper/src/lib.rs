@@ -21,7 +21,7 @@
 //! ## Spheres over time
 //! [`BodyOverDomain`], [`SphereOverDomain`], [`test_sphere_pair`].
 //!
-//! Vectors and quaternions are those of [`glam`], in the version that is given out here.
+//! Vectors and quaternions are those of [`glam`](https://docs.rs/glam), in the version that is given out here.
 #![doc(html_root_url = "https://docs.rs/d2m-paper")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]

@@ -27,7 +27,7 @@
 //! ## Errors
 //! [`RobotError`]: file, link or joint, and the value found.
 //!
-//! Vectors and quaternions are those of [`glam`], in the version that is given out here.
+//! Vectors and quaternions are those of [`glam`](https://docs.rs/glam), in the version that is given out here.
 #![cfg_attr(not(feature = "dynamics"), doc = "")]
 #![cfg_attr(not(feature = "dynamics"), doc = " [`RobotBodies`]: index.html#simulations")]
 #![cfg_attr(not(feature = "dynamics"), doc = " [`Base`]: index.html#simulations")]

@@ -14,7 +14,7 @@
 //! ## Errors
 //! [`MeshFault`]: vertices and triangles that are no mesh.
 //!
-//! Vectors and quaternions are those of [`glam`], in the version that is given out here.
+//! Vectors and quaternions are those of [`glam`](https://docs.rs/glam), in the version that is given out here.
 #![doc(html_root_url = "https://docs.rs/d2m-verify")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]

@@ -24,7 +24,7 @@
 //! ## Errors
 //! [`WorldError`]: bad input, with the names of the bodies.
 //!
-//! Vectors and quaternions are those of [`glam`], in the version that is given out here.
+//! Vectors and quaternions are those of [`glam`](https://docs.rs/glam), in the version that is given out here.
 #![doc(html_root_url = "https://docs.rs/d2m-world")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]

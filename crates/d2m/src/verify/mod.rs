@@ -31,7 +31,7 @@ mod rounding;
 mod witness;
 
 pub use claims::{clearance_claim, spans_claim};
-pub use d2m_verify::*;
+pub use d2m_verify::{Body, Claim, Mesh, MeshFault, Query, Reason, Solid, TimeSpan, Verdict, verify};
 pub use leaving::departure_claim;
 #[cfg(feature = "robot")]
 pub use path::{PairFault, PathVerdict, PathVerdictFault, verify_path};
