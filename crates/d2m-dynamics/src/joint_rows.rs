@@ -39,6 +39,12 @@ pub(crate) struct Ahead {
     pub(crate) forces: bool,
 }
 
+/// The joint of these bodies is refused for a value.
+fn unusable([a, b]: [&RigidBody; 2], name: &'static str, value: String) -> SimulationError {
+    let [a, b] = [a, b].map(|body| body.name.to_string());
+    SimulationError::BadJoint { a, b, name, value, reason: UNUSABLE }
+}
+
 impl Joined {
     pub(crate) fn try_new(
         joint: &Joint,
@@ -46,15 +52,7 @@ impl Joined {
         bodies: &[RigidBody],
     ) -> Result<Self, SimulationError> {
         let [a, b] = places.map(|i| &bodies[i]);
-        let bad = |name: &'static str, value: String| {
-            Err(SimulationError::BadJoint {
-                a: a.name.to_string(),
-                b: b.name.to_string(),
-                name,
-                value,
-                reason: UNUSABLE,
-            })
-        };
+        let bad = |name: &'static str, value: String| Err(unusable([a, b], name, value));
         Self::check_numbers(joint, [a, b])?;
         let axis = joint.axis.normalize_or_zero();
         if places[0] == places[1] || !(a.is_dynamic() || b.is_dynamic()) {
@@ -134,15 +132,7 @@ impl Joined {
         } else {
             (!is_small(DVec3::splat(self.value))).then(|| ("value", shown([self.value])))
         };
-        fault.map_or(Ok(()), |(name, value)| {
-            Err(SimulationError::BadJoint {
-                a: a.name.to_string(),
-                b: b.name.to_string(),
-                name,
-                value,
-                reason: UNUSABLE,
-            })
-        })
+        fault.map_or(Ok(()), |(name, value)| Err(unusable([a, b], name, value)))
     }
 
     pub(crate) fn has(&self, body: usize) -> bool {
