@@ -56,11 +56,13 @@ struct Closing {
 /// What solutions may leave.
 #[derive(Clone, Copy)]
 struct Leaves {
-    /// What others do. It comes from the same contact in one flight after the other, until that has no room where the others have some.
+    /// The residual that is usual. More of it may come from the same contact in one flight after the other, and use up its room while others still have
+    /// some.
     usual: f64,
-    /// No velocities obey the law if they leave more.
+    /// The greatest residual of velocities that count as obeying the law.
     most: f64,
-    /// No faster than this become bodies by less than the most: what is driven out would be thrown.
+    /// The greatest speed of a body in a solution with the usual residual. A faster one is solved with the greatest residual instead: what is driven
+    /// out would be thrown.
     fastest: f64,
 }
 
