@@ -28,7 +28,7 @@ use d2m_mesh::Meter;
 #[cfg(feature = "audit")]
 use d2m_mesh::audit::Place;
 use d2m_mesh::margin::length;
-use d2m_motion::{Chain, ConstantTwist, FittedTwists, Pose, RigidMotion, Twist};
+use d2m_motion::{ConstantTwist, FittedTwists, Pose, RigidMotion, Twist};
 use plane::PlaneSearch;
 use span_length::{Drifting, LastFit, Shortfall};
 
@@ -65,34 +65,7 @@ pub(super) fn general_motion(
     pair: CoveredPair<'_>,
     options: &QueryOptions,
 ) -> Result<Answered<TimeOfContact>, QueryError> {
-    let bodies = pair.bodies();
-    if let (Some(a), Some(b)) = (bodies[0].motion.chain(), bodies[1].motion.chain()) {
-        let common = a.common_joints(b);
-        if common > 0 {
-            return from_common_joint(&pair, [a, b], common, options);
-        }
-    }
     Advance::new(pair, *options).run()
-}
-
-/// Two links of one arm, seen from the last joint that they have in common.
-fn from_common_joint(
-    pair: &CoveredPair<'_>,
-    [a, b]: [&Chain; 2],
-    common: usize,
-    options: &QueryOptions,
-) -> Result<Answered<TimeOfContact>, QueryError> {
-    let (rest_a, rest_b) = (a.without_first(common), b.without_first(common));
-    let bodies = pair.bodies();
-    let seen = [Moving { motion: &rest_a, ..bodies[0] }, Moving { motion: &rest_b, ..bodies[1] }];
-    let mut answered = Advance::new(CoveredPair::try_new(seen, pair.window())?, *options).run()?;
-    if let TimeOfContact::Contact(contact) = &mut answered.answer {
-        let (frame, _) = a.only_first(common).pose_and_twist(contact.time_lo);
-        contact.normal = frame.transform_vector(contact.normal);
-        contact.point_a = frame.transform_point(contact.point_a);
-        contact.point_b = frame.transform_point(contact.point_b);
-    }
-    Ok(answered)
 }
 
 /// One query on its way through time.

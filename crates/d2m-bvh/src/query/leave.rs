@@ -1,6 +1,7 @@
 //! What holds at the start counts no more once the bodies have parted: the first contact after that.
 
 use super::at_start::judged;
+use super::carried_pair::CarriedPair;
 use super::general_motion::tolerance_of;
 use super::meshes::of_meshes;
 use super::rounded::Rounded;
@@ -83,11 +84,11 @@ pub fn departure(
     window: Window,
     options: &QueryOptions,
 ) -> Result<Departure, QueryError> {
-    CoveredPair::try_new([a, b], window)?;
+    let carried = CarriedPair::new(&CoveredPair::try_new([a, b], window)?);
     let rounded = Rounded::try_new([&a, &b])?;
     let options = rounded.options([a.body, b.body], options)?;
-    let Departure { start, left, answer } = of_departing([a, b], window, &options)?.answer;
-    Ok(Departure { start, left, answer: rounded.answer(answer) })
+    let Departure { start, left, answer } = of_departing(carried.seen(), window, &options)?.answer;
+    Ok(Departure { start, left, answer: rounded.answer(carried.in_world(answer)) })
 }
 
 /// The same of the meshes, without radii.

@@ -2,6 +2,7 @@
 
 mod at_start;
 mod batch;
+mod carried_pair;
 mod clearance;
 #[cfg(feature = "audit")]
 mod concluded;

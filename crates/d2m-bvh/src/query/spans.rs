@@ -1,6 +1,7 @@
 //! The spans of a window in which two bodies are clear of each other, and those in which they are in contact. Clear spans end where a search of
 //! the first contact ends; ends of contact are found by [`super::staying_walk`].
 
+use super::carried_pair::CarriedPair;
 #[cfg(feature = "audit")]
 use super::concluded::{Claimed, conclude_apart};
 use super::general_motion::tolerance_of;
@@ -142,7 +143,8 @@ pub fn contact_spans(
     {
         return Err(QueryError::BadResolution { value });
     }
-    CoveredPair::try_new([a, b], window)?;
+    let carried = CarriedPair::new(&CoveredPair::try_new([a, b], window)?);
+    let [a, b] = carried.seen();
     let rounded = Rounded::try_new([&a, &b])?;
     let mut options = rounded.options([a.body, b.body], options)?;
     options.mode = Mode::Accurate;

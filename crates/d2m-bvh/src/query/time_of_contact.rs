@@ -1,16 +1,20 @@
 //! The query for the first contact of two bodies.
 
 use super::at_start::judged;
+use super::carried_pair::CarriedPair;
 use super::leave::of_departing;
 use super::meshes::of_meshes;
 use super::rounded::Rounded;
+use crate::covered_pair::CoveredPair;
 use crate::{Answered, Meter, Moving, QueryError, QueryOptions, Start, TimeOfContact, Window};
 
 /// First time in `window` at which the two bodies touch.
 ///
 /// Constant twists (screw motions too) are searched as they are, keyframes span by span. Any other motion is
 /// approximated by constant twists on spans of time, with a proven deviation that is taken from the gap: usually three to
-/// five searches, most of them over short spans.
+/// five searches, most of them over short spans. Bodies that one motion carries together – the same reference, chains or twists with
+/// equal numbers – are seen from it, and links of one arm from the last joint that they have in common, in this query and all others of
+/// moving bodies: how fast that is does not matter.
 ///
 /// Promise: never a missed contact, never a late one. See [`TimeOfContact`] and [`Contact`](crate::Contact) for what
 /// each answer certifies, and [`QueryOptions`] for what can be chosen.
@@ -76,6 +80,8 @@ pub fn time_of_contact_counted(
 ) -> Result<Answered<TimeOfContact>, QueryError> {
     let rounded = Rounded::try_new([&a, &b])?;
     let options = rounded.options([a.body, b.body], options)?;
+    let carried = CarriedPair::new(&CoveredPair::try_new([a, b], window)?);
+    let [a, b] = carried.seen();
     let Answered { answer, work } = match options.start {
         Start::Leave => {
             let Answered { answer, work } = of_departing([a, b], window, &options)?;
@@ -88,5 +94,5 @@ pub fn time_of_contact_counted(
             judged(&found, &[a, b], window, &options.with_budget(meter.rest()))?
         }
     };
-    Ok(Answered { answer: rounded.answer(answer), work })
+    Ok(Answered { answer: rounded.answer(carried.in_world(answer)), work })
 }

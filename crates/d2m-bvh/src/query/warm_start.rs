@@ -1,6 +1,7 @@
 //! Queries that use what earlier ones left in a cache, and give the same bits as without.
 
 use super::at_start::judged;
+use super::carried_pair::CarriedPair;
 use super::constant_twist::{ask, scene_of, scene_of_twists};
 use super::general_motion::{general_motion, rounding_tolerance, tolerance_of};
 use super::leave::of_departing;
@@ -66,6 +67,8 @@ pub fn time_of_contact_with(
 ) -> Result<TimeOfContact, QueryError> {
     let rounded = Rounded::try_new([&a, &b])?;
     let options = rounded.options([a.body, b.body], options)?;
+    let carried = CarriedPair::new(&CoveredPair::try_new([a, b], window)?);
+    let [a, b] = carried.seen();
     let answer = match options.start {
         Start::Leave => cache.counted(of_departing([a, b], window, &options)?).answer,
         Start::Report => {
@@ -77,7 +80,7 @@ pub fn time_of_contact_with(
             judged.answer
         }
     };
-    Ok(rounded.answer(answer))
+    Ok(rounded.answer(carried.in_world(answer)))
 }
 
 /// The query of the meshes, without radii.
@@ -269,6 +272,8 @@ pub fn contact_exists(
     cache: &mut PairCache,
 ) -> Result<Option<bool>, QueryError> {
     let options = Rounded::try_new([&a, &b])?.options([a.body, b.body], options)?.with_mode(Mode::Exists);
+    let carried = CarriedPair::new(&CoveredPair::try_new([a, b], window)?);
+    let [a, b] = carried.seen();
     let pair = CoveredPair::try_new([a, b], window)?;
     let scene = scene_of(&pair, &options)?;
     if !options.budget.is_limited()

@@ -14,6 +14,7 @@ mod way;
 
 pub use options::{Clearance, ClearanceOptions, ClearanceStatus};
 
+use super::carried_pair::CarriedPair;
 use super::general_motion::tolerance_of;
 use super::kept_motion::KeptMotions;
 use super::meshes::of_meshes;
@@ -81,8 +82,9 @@ pub fn clearance(
     if options.cutoff.is_nan() || options.cutoff < 0.0 {
         return Err(QueryError::BadMinSeparation { value: options.cutoff });
     }
-    CoveredPair::try_new([a, b], window)?;
-    Descent::try_new([a, b], window, options)?.run()
+    let carried = CarriedPair::new(&CoveredPair::try_new([a, b], window)?);
+    let found = Descent::try_new(carried.seen(), window, options)?.run()?;
+    Ok(carried.clearance_in_world(found))
 }
 
 /// [`clearance`] of many pairs of bodies, in order. On all threads of the current rayon pool with the feature `rayon`; each query runs

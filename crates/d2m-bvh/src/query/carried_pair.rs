@@ -1,0 +1,117 @@
+//! Two bodies that something carries together, seen from there: only how they move against each other decides when they meet.
+//!
+//! Distances of two bodies at a time are the same in every rigid frame, also in one that moves. So where both poses are c(t)·a(t) and c(t)·b(t)
+//! with one and the same c, the query of the motions a and b has the answer of that of the bodies, but for the places of what it
+//! reports. No bound has to hold for c then, however fast it is. That the two have c in common is known where nothing is rounded: it is one object,
+//! or given by equal numbers.
+
+use crate::covered_pair::CoveredPair;
+use crate::{Clearance, Contact, Moving, TimeOfContact};
+use d2m_motion::{Chain, ConstantTwist, Pose, RigidMotion};
+use glam::DVec3;
+
+/// What both bodies have in common, and what is left of their motions.
+enum Carrier<'a> {
+    /// Nothing that is known.
+    World,
+    /// Both move as this one: they are at rest in its frame.
+    Motion(&'a dyn RigidMotion),
+    /// The first joints of two links of one arm, and the chains of the links from there on.
+    Joints { first: Chain, rest: [Chain; 2] },
+}
+
+/// Two moving bodies, and what carries them both.
+pub(super) struct CarriedPair<'a> {
+    bodies: [Moving<'a>; 2],
+    carrier: Carrier<'a>,
+}
+
+impl<'a> CarriedPair<'a> {
+    pub(super) fn new(pair: &CoveredPair<'a>) -> Self {
+        let bodies = *pair.bodies();
+        Self { bodies, carrier: Carrier::of(bodies.map(|body| body.motion), pair.window().start()) }
+    }
+
+    /// The bodies as they move in the carrier.
+    pub(super) fn seen(&self) -> [Moving<'_>; 2] {
+        let [a, b] = self.bodies;
+        match &self.carrier {
+            Carrier::World => [a, b],
+            Carrier::Motion(_) => {
+                [Moving { motion: &ConstantTwist::REST, ..a }, Moving { motion: &ConstantTwist::REST, ..b }]
+            }
+            Carrier::Joints { rest: [of_a, of_b], .. } => {
+                [Moving { motion: of_a, ..a }, Moving { motion: of_b, ..b }]
+            }
+        }
+    }
+
+    /// An answer about the bodies that are seen, with places and directions of the world.
+    pub(super) fn in_world(&self, answer: TimeOfContact) -> TimeOfContact {
+        match answer {
+            TimeOfContact::Contact(contact) => {
+                let [normal, point_a, point_b] =
+                    self.carry(contact.time_lo, contact.normal, [contact.point_a, contact.point_b]);
+                TimeOfContact::Contact(Contact { normal, point_a, point_b, ..contact })
+            }
+            other => other,
+        }
+    }
+
+    /// The same of a clearance.
+    pub(super) fn clearance_in_world(&self, found: Clearance) -> Clearance {
+        let [normal, point_a, point_b] = self.carry(found.time, found.normal, [found.point_a, found.point_b]);
+        Clearance { point_a, point_b, normal, ..found }
+    }
+
+    fn carry(&self, time: f64, normal: DVec3, [a, b]: [DVec3; 2]) -> [DVec3; 3] {
+        let carried = |frame: Pose| {
+            [frame.transform_vector(normal), frame.transform_point(a), frame.transform_point(b)]
+        };
+        match &self.carrier {
+            Carrier::World => [normal, a, b],
+            Carrier::Motion(motion) => carried(motion.pose_and_twist(time).0),
+            Carrier::Joints { first, .. } => carried(first.pose_and_twist(time).0),
+        }
+    }
+}
+
+impl<'a> Carrier<'a> {
+    fn of([a, b]: [&'a dyn RigidMotion; 2], start: f64) -> Self {
+        if is_shared(a, b) {
+            let Pose { translation, rotation, .. } = a.pose_and_twist(start).0;
+            // A motion that has no pose is for the search to refuse.
+            return if translation.is_finite() && rotation.is_finite() {
+                Self::Motion(a)
+            } else {
+                Self::World
+            };
+        }
+        let (Some(a), Some(b)) = (a.chain(), b.chain()) else { return Self::World };
+        let common = a.common_joints(b);
+        if common == 0 {
+            return Self::World;
+        }
+        let rest = [a.without_first(common), b.without_first(common)];
+        Self::Joints { first: a.only_first(common), rest }
+    }
+}
+
+/// Are these two one motion for certain, and one that is worth to be left out?
+fn is_shared<'a>(a: &'a dyn RigidMotion, b: &'a dyn RigidMotion) -> bool {
+    match (a.constant_twist(), b.constant_twist()) {
+        // Searches see by themselves that nothing changes between bodies that do not turn.
+        (Some(a), Some(b)) => a == b && a.angular_velocity() != DVec3::ZERO,
+        // By address and type: a part of a motion may have the address of the whole.
+        (None, None) => {
+            let same_object = core::ptr::eq::<dyn RigidMotion>(a, b);
+            let equal_chains = || {
+                let (Some(a), Some(b)) = (a.chain(), b.chain()) else { return false };
+                let count = a.joints().len();
+                count == b.joints().len() && a.common_joints(b) == count
+            };
+            same_object || equal_chains()
+        }
+        _ => false,
+    }
+}

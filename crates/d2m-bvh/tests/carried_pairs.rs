@@ -1,0 +1,167 @@
+//! Bodies that one motion carries together stay as they are, however fast it is: queries of every kind say so after a few tests. What only seems
+//! to be one motion is searched.
+
+use d2m_bvh::{
+    Budget, ClearanceOptions, ClearanceStatus, MeshTree, Moving, PairCache, QueryOptions, SpanStatus, Start,
+    StartState, TriMesh, Window, clearance, contact_exists, contact_spans, departure, time_of_contact,
+    time_of_contact_batch, time_of_contact_counted, time_of_contact_with,
+};
+use d2m_feature::triangle_distance;
+use d2m_interval::{Interval, IntervalVec3};
+use d2m_motion::{
+    Chain, ConstantTwist, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Pose, RigidMotion,
+    Spline, SplineDegree, Twist,
+};
+use d2m_testing::{Draw, KnuthRandom, Surface};
+use glam::{DQuat, DVec3};
+
+/// What a query of bodies at rest takes, with room.
+const FEW_TESTS: u64 = 20_000;
+
+fn cuboid_at(center: DVec3, half: f64) -> MeshTree {
+    MeshTree::new(Surface::cuboid(center - half, center + half).into_mesh(TriMesh::try_new))
+}
+
+/// Turns by hundreds of radians.
+fn joint(place: DVec3, axis: DVec3, rate: f64) -> Joint {
+    let value = JointValue::try_polynomial(vec![0.1, rate, -0.3 * rate]).unwrap();
+    Joint::try_new(place, DQuat::from_rotation_x(0.4), JointKind::Revolute { axis, value }).unwrap()
+}
+
+/// Two joints, the second one on an arm of length one; anew each time.
+fn fast_chain() -> Chain {
+    Chain::try_new(vec![joint(DVec3::Y, DVec3::Z, 400.0), joint(DVec3::X, DVec3::Y, 250.0)]).unwrap()
+}
+
+fn fast_spline() -> Spline {
+    let mut random = KnuthRandom(5);
+    let pose = |translation, rotation| Pose { translation, rotation, at: DVec3::ZERO };
+    let poses = (0..40).map(|_| pose(random.vector() * 3.0, random.moderate_turn().normalize()));
+    let keys: Vec<_> = poses.enumerate().map(|(k, pose)| (k as f64 / 39.0, pose)).collect();
+    Spline::try_through(&keys, SplineDegree::Cubic).unwrap()
+}
+
+fn fast_twist() -> ConstantTwist {
+    ConstantTwist::REST
+        .with_position(DVec3::new(0.3, 2.0, -1.0))
+        .with_linear_velocity(DVec3::X * 7.0)
+        .with_angular_velocity(DVec3::new(200.0, 90.0, -170.0))
+}
+
+/// The distance of two surfaces with one pose, by all pairs of triangles.
+fn at_rest(a: &MeshTree, b: &MeshTree) -> f64 {
+    let corners = |tree: &MeshTree| -> Vec<_> {
+        (0..tree.mesh().triangle_count()).map(|t| tree.mesh().corners(t)).collect()
+    };
+    let (a, b) = (corners(a), corners(b));
+    let pairs = a.iter().flat_map(|s| b.iter().map(move |t| triangle_distance(s, t).upper));
+    pairs.fold(f64::INFINITY, f64::min)
+}
+
+/// Boxes a millionth apart, in touch and in each other, with equal chains, with one spline and with equal twists.
+#[test]
+fn what_one_motion_carries_stays_as_it_is() {
+    let (chains, spline) = ([fast_chain(), fast_chain()], fast_spline());
+    let twists = [fast_twist(), fast_twist()];
+    let motions: [[&dyn RigidMotion; 2]; 3] =
+        [[&chains[0], &chains[1]], [&spline, &spline], [&twists[0], &twists[1]]];
+    let first = cuboid_at(DVec3::ZERO, 0.5);
+    let budget = Budget::UNLIMITED.with_node_tests(FEW_TESTS);
+    let options = QueryOptions::default().with_tolerance(1e-9).with_budget(budget);
+    for (kind, [of_a, of_b]) in motions.into_iter().enumerate() {
+        for gap in [1e-6, 0.0, -0.25, -1.0] {
+            let second = cuboid_at(DVec3::X * (1.0 + gap), 0.5);
+            let [a, b] = [Moving::new(&first, of_a), Moving::new(&second, of_b)];
+            let distance = at_rest(&first, &second);
+            assert_eq!(distance > 0.0, gap > 0.0);
+            let found = time_of_contact_counted(a, b, Window::UNIT, &options).unwrap();
+            let answer = time_of_contact_with(a, b, Window::UNIT, &options, &mut PairCache::new()).unwrap();
+            let batch = time_of_contact_batch(&[(a, b), (a, b)], Window::UNIT, &options);
+            assert_eq!((found.answer, Ok(found.answer)), (answer, batch[1]), "{kind}, {gap}");
+            let exists = contact_exists(a, b, Window::UNIT, &options, &mut PairCache::new()).unwrap();
+            assert_eq!(exists, Some(gap <= 0.0), "{kind}, {gap}");
+            let parting = departure(a, b, Window::UNIT, &options).unwrap();
+            let leaving = time_of_contact(a, b, Window::UNIT, &options.with_start(Start::Leave)).unwrap();
+            assert_eq!(parting.answer, leaving);
+            let spans = contact_spans(a, b, Window::UNIT, &options, None).unwrap();
+            assert_eq!(spans.len(), 1, "{kind}, {gap}: {spans:?}");
+            let nearest = ClearanceOptions::default().with_budget(budget);
+            let nearest = clearance(a, b, Window::UNIT, &nearest).unwrap();
+            if gap > 0.0 {
+                assert!(found.answer.is_separated() && parting.answer.is_separated(), "{kind}");
+                assert_eq!((parting.start, spans[0].status), (StartState::Apart, SpanStatus::Clear));
+                assert_eq!(nearest.status, ClearanceStatus::Clear, "{kind}");
+                assert!(nearest.lower <= distance && distance <= nearest.upper && nearest.lower > 0.9 * gap);
+                let across = (nearest.point_b - nearest.point_a).length();
+                assert!((across - distance).abs() < 1e-12, "{kind}: {across}");
+            } else {
+                let contact = found.answer.contact().expect("they share points");
+                assert_eq!((contact.time_lo, spans[0].status), (0.0, SpanStatus::Contact), "{kind}, {gap}");
+                assert_eq!((parting.left, nearest.status), (None, ClearanceStatus::Contact), "{kind}, {gap}");
+                let left = parting.answer.contact().expect("they never part");
+                for contact in [contact, left] {
+                    let corners = first.mesh().corners(contact.triangle_a as usize);
+                    let [x, y, z] = contact.barycentric_a;
+                    let point = corners[0] * x + corners[1] * y + corners[2] * z;
+                    let place = of_a.pose_and_twist(contact.time_lo).0.transform_point(point);
+                    assert!((place - contact.point_a).length() < 1e-12, "{kind}, {gap}: {contact:?}");
+                }
+            }
+        }
+    }
+}
+
+/// Another motion at the address of the one that it holds: pushed along x by 4 in unit time.
+#[repr(transparent)]
+struct Pushed(Spline);
+
+impl RigidMotion for Pushed {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        let (pose, twist) = self.0.pose_and_twist(t);
+        let pose = Pose { translation: pose.translation + DVec3::X * (4.0 * t - 2.0), ..pose };
+        (pose, Twist { linear: twist.linear + DVec3::X * 4.0, ..twist })
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        let pose = self.0.enclose_pose(t);
+        let x = Interval::point(4.0) * t - Interval::point(2.0);
+        IntervalPose { translation: pose.translation + IntervalVec3 { x, ..IntervalVec3::ZERO }, ..pose }
+    }
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        let twist = self.0.enclose_twist(t);
+        let x = Interval::point(4.0);
+        IntervalTwist { linear: twist.linear + IntervalVec3 { x, ..IntervalVec3::ZERO }, ..twist }
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist_rate(t)
+    }
+    fn domain(&self) -> Interval {
+        self.0.domain()
+    }
+    fn smooth_until(&self, t: f64) -> Option<f64> {
+        self.0.smooth_until(t)
+    }
+}
+
+/// Twists with one number that differs, a chain with one joint more, a motion at the address of another one: the bodies meet.
+#[test]
+fn what_only_seems_one_motion_is_searched() {
+    let (small, other) = (cuboid_at(DVec3::ZERO, 0.25), cuboid_at(DVec3::ZERO, 0.25));
+    let window = Window::try_new(0.0, 1.0).unwrap();
+    let meet = |a: &dyn RigidMotion, b: &dyn RigidMotion| {
+        let [a, b] = [Moving::new(&small, a), Moving::new(&other, b)];
+        let answer = time_of_contact(a, b, window, &QueryOptions::default()).unwrap();
+        answer.contact().is_some_and(|contact| contact.time_lo > 1e-3)
+    };
+    let twist = ConstantTwist::REST.with_angular_velocity(DVec3::Z * 20.0);
+    let coming = twist.with_position(DVec3::X * 2.0).with_linear_velocity(DVec3::X * -3.0);
+    let reversed = twist.with_angular_velocity(DVec3::Z * -20.0);
+    assert!(meet(&twist, &coming) && meet(&reversed, &coming));
+    let pushed = Pushed(fast_spline());
+    assert!(meet(&pushed, &pushed.0) && meet(&pushed.0, &pushed));
+    // A slide on the first link that comes in from outside.
+    let base = fast_chain();
+    let value = JointValue::try_polynomial(vec![2.0, -3.0]).unwrap();
+    let kind = JointKind::Prismatic { axis: DVec3::X, value };
+    let slide = base.and(Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, kind).unwrap()).unwrap();
+    assert!(meet(&base, &slide) && meet(&slide, &base));
+}
