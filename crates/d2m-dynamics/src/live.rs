@@ -323,12 +323,15 @@ impl Simulation {
         Ok(())
     }
 
-    /// These two bodies may pass through each other from now on.
+    /// These two bodies may pass through each other from now on. A body and itself are no pair: nothing is kept of that.
     ///
     /// # Panics
     /// If one of them was removed.
     pub fn ignore(&mut self, a: BodyId, b: BodyId) {
         let key = self.key(a, b);
+        if key.0 == key.1 {
+            return;
+        }
         self.ignored.insert(key);
         self.drop_known(key.0);
         self.drop_known(key.1);

@@ -340,6 +340,18 @@ mod tests {
         simulation.restore(&whole).unwrap();
     }
 
+    /// A body and itself are no pair that a snapshot could lose.
+    #[test]
+    fn nothing_is_kept_of_a_body_and_itself() {
+        let (mut simulation, _) = written();
+        let ids: Vec<_> = simulation.ids().collect();
+        simulation.ignore(ids[0], ids[0]);
+        simulation.ignore(ids[1], ids[0]);
+        let snapshot = simulation.snapshot();
+        simulation.restore(&snapshot).unwrap();
+        assert_eq!(simulation.snapshot(), snapshot);
+    }
+
     /// Time that has passed without steps is passed over at once, and where no number of steps leads on that is said.
     #[test]
     fn steps_go_on_after_a_long_time() {

@@ -12,6 +12,8 @@ const MOST_ROUNDS: u32 = 64;
 const PRECISION: f64 = 1e-13;
 /// Relative increase of the energy that counts as rounding.
 const ENERGY_ROUNDING: f64 = 1e-12;
+/// The part of the fastest closing speed that solutions may leave where something follows its motion: what is more obeys no law.
+const UNSOLVED: f64 = 1.0 / 8.0;
 /// Solutions by which the scale of the restitution is found.
 const MOST_SCALES: u32 = 16;
 
@@ -42,6 +44,7 @@ pub(crate) fn impact(
         }
         let before = system.velocities();
         let energy = system.doubled_energy(inertia);
+        let mut residual = 0.0;
         // What a scale adds to the energy.
         let mut add = |scale: f64| {
             // Contacts that do not close have no part in this round: a target that they have already. Joints hold meanwhile.
@@ -64,12 +67,17 @@ pub(crate) fn impact(
                 slow: f64::INFINITY,
                 still: None,
             };
-            system.solve(&targets, accuracy, Start::Sticking);
+            residual = system.solve(&targets, accuracy, Start::Sticking);
             system.doubled_energy(inertia) - energy
         };
         // A body that follows its motion may work: then the others may gain.
         if driven {
             add(1.0);
+            // Where all that is between a press and a wall closes at once it has nowhere to bounce to: the nearest velocities may be as large as
+            // normals are askew. What room is left the flights share.
+            if residual > UNSOLVED * fastest {
+                break;
+            }
         } else {
             keep_energy(&mut add, ENERGY_ROUNDING * energy);
         }
