@@ -93,25 +93,44 @@ impl FittedTwists {
         let fits = bodies.map(|body| candidates(&body, span, middle, origin));
         // Either difference is rounded once.
         let half = (to - middle).max(middle - from) * UP;
-        let mut best: Option<Self> = None;
-        for a in fits[0].iter().flatten() {
-            for b in fits[1].iter().flatten() {
-                for bend in bends(a, b) {
-                    let clock = FittedClock { middle, bend };
+        let mut best = None;
+        let mut least = f64::INFINITY;
+        let mut turned = [0, 1].map(|k| fits[k].each_ref().map(|fit| Turned::new(fit.as_ref(), half)));
+        let [of_a, of_b] = &mut turned;
+        for a in of_a.iter_mut().flatten() {
+            for b in of_b.iter_mut().flatten() {
+                for (which, bend) in bends(a.fit, b.fit).into_iter().enumerate() {
                     if bend.abs() * half > MOST_BEND {
                         continue;
                     }
-                    let fitted = between(a, b, half, clock);
+                    let turns = [a.at(which, bend), b.at(which, bend)];
+                    let deviation = deviation([a.fit, b.fit], half, bend, turns);
                     // What is not a number is never better.
-                    if fitted.deviation < best.as_ref().map_or(f64::INFINITY, |best| best.deviation) {
-                        best = Some(fitted);
+                    if deviation < least {
+                        (best, least) = (Some(([a.fit, b.fit], FittedClock { middle, bend })), deviation);
                     }
                 }
             }
         }
-        let fits = fits.map(|[given, _]| given);
-        let size = fits.iter().flatten().map(|fit| (fit.state.position + origin).length() + fit.reach).sum();
-        best.map(|best| Self { size, ..best })
+        let size = |fit: &Fit| (fit.state.position + origin).length() + fit.reach;
+        let size = fits.iter().filter_map(|[given, _]| given.as_ref()).map(size).sum();
+        best.map(|(fits, clock)| Self::of(fits, half, clock, least, size))
+    }
+
+    fn of([a, b]: [&Fit; 2], half: f64, clock: FittedClock, deviation: f64, size: f64) -> Self {
+        let drifts = |fit: &Fit| half * (fit.state.linear_radius + fit.reach * fit.state.angular_radius);
+        let still = |fit: &Fit| fit.state.position_radius + fit.reach * fit.rotation_radius;
+        // By its own clock a motion has its reference time at zero.
+        let timed =
+            |twist: ConstantTwist| if clock.bend == 0.0 { twist } else { twist.with_reference_time(0.0) };
+        Self {
+            twists: [timed(a.twist), timed(b.twist)],
+            clock,
+            deviation,
+            floor: still(a) + still(b),
+            drift: drifts(a) + drifts(b),
+            size,
+        }
     }
 }
 
@@ -155,31 +174,47 @@ fn bends(a: &Fit, b: &Fit) -> [f64; 4] {
     ]
 }
 
-fn between(a: &Fit, b: &Fit, half: f64, clock: FittedClock) -> FittedTwists {
-    let FittedClock { bend, .. } = clock;
-    let kept = |speed: DVec3| Ball::point(speed).times(bend, 0.0);
+/// By how much a body may be turned away from its fit, for bends that were asked for.
+struct Turned<'f> {
+    fit: &'f Fit,
+    half: f64,
+    /// The last bend of each kind, and the answer: mostly the same with each fit of the other body.
+    known: [Option<(f64, f64)>; 4],
+}
+
+impl<'f> Turned<'f> {
+    fn new(fit: Option<&'f Fit>, half: f64) -> Option<Self> {
+        fit.map(|fit| Self { fit, half, known: [None; 4] })
+    }
+
+    fn at(&mut self, which: usize, bend: f64) -> f64 {
+        let Self { fit, half, .. } = *self;
+        match self.known[which] {
+            Some((known, turned)) if known == bend => turned,
+            _ => {
+                let rate = (fit.angular_rate - kept(fit.state.angular, bend)).bound_length();
+                let turned = fit.reach
+                    * (fit.rotation_radius + half * fit.state.angular_radius + 0.5 * half * half * rate);
+                self.known[which] = Some((bend, turned));
+                turned
+            }
+        }
+    }
+}
+
+/// What a clock with this bend changes of a speed.
+fn kept(speed: DVec3, bend: f64) -> Ball {
+    Ball::point(speed).times(bend, 0.0)
+}
+
+/// How far apart distances of these fits and of the motions are, by a clock with this bend, where the bodies are turned away by so much.
+fn deviation([a, b]: [&Fit; 2], half: f64, bend: f64, [turned_a, turned_b]: [f64; 2]) -> f64 {
     let relative = (Ball::point(a.state.linear) - Ball::point(b.state.linear)).times(bend, 0.0);
     let along = (a.acceleration - b.acceleration - relative).bound_length();
-    let square = 0.5 * half * half;
-    let turned = |fit: &Fit| {
-        let rate = (fit.angular_rate - kept(fit.state.angular)).bound_length();
-        fit.reach * (fit.rotation_radius + half * fit.state.angular_radius + square * rate)
-    };
-    let drifts = |fit: &Fit| half * (fit.state.linear_radius + fit.reach * fit.state.angular_radius);
-    let still = |fit: &Fit| fit.state.position_radius + fit.reach * fit.rotation_radius;
-    let moved = half * (a.state.linear_radius + b.state.linear_radius) + square * along;
-    let deviation = a.state.position_radius + b.state.position_radius + moved + turned(a) + turned(b);
-    // By its own clock a motion has its reference time at zero.
-    let timed = |twist: ConstantTwist| if bend == 0.0 { twist } else { twist.with_reference_time(0.0) };
-    FittedTwists {
-        twists: [timed(a.twist), timed(b.twist)],
-        clock,
-        // What underflow may take is less than the smallest normal number.
-        deviation: deviation * UP + f64::MIN_POSITIVE,
-        floor: still(a) + still(b),
-        drift: drifts(a) + drifts(b),
-        size: 0.0,
-    }
+    let moved = half * (a.state.linear_radius + b.state.linear_radius) + 0.5 * half * half * along;
+    let deviation = a.state.position_radius + b.state.position_radius + moved + turned_a + turned_b;
+    // What underflow may take is less than the smallest normal number.
+    deviation * UP + f64::MIN_POSITIVE
 }
 
 /// The time s(t) = x + ½κx², x = t − m, by which fitted motions go that become faster or slower together; the time itself where κ

@@ -318,14 +318,16 @@ impl JointValue {
             }
             let mut sum = 0.0;
             for k in (derivative + 1..terms.len()).rev() {
-                let factor = ((k + 1 - derivative)..=k).map(|i| i as f64).product::<f64>();
+                let power = k as f64;
+                let factor = [1.0, power, power * (power - 1.0)][derivative];
                 sum = up(sum * r + up(terms[k].0.hi.abs() + terms[k].1) * factor);
             }
             up(sum * r)
         };
+        // 1 or 2: exact.
         let part = |derivative: usize, factor: f64| {
             let (b, error) = term(derivative);
-            let center = b * factor;
+            let center = b.scaled(factor);
             let radius = up(error * factor + beyond(derivative, r));
             let known = center.hi.is_finite() && center.lo.is_finite() && radius < f64::INFINITY;
             if known {
@@ -363,10 +365,11 @@ fn taylor(coefficients: &[f64], tails: &[Tail], s: f64, terms: &mut [(DoubleDoub
         return;
     }
     for row in 0..n {
-        for j in (row..n - 1).rev() {
-            let (next, size) = terms[j + 1];
-            terms[j].0 = terms[j].0 + next * s;
-            terms[j].1 = up(terms[j].1 + size * s.abs());
+        let Some((last, lower)) = terms[row..n].split_last_mut() else { break };
+        let (mut next, mut size) = *last;
+        for term in lower.iter_mut().rev() {
+            (next, size) = (term.0 + next * s, up(term.1 + size * s.abs()));
+            *term = (next, size);
         }
     }
     for term in terms.iter_mut().take(n) {

@@ -283,11 +283,15 @@ pub(crate) fn apart_over_span<L: Lanes>(
     let best = discriminant(&Spread::new([&long, &middle_long], &wide_half), &spread, &line);
     // A triangle may be large against the boxes, then spreads say little of it.
     let used = if single.child[lane] & LEAF == 0 { 0 } else { (1 << wide.used) - 1 };
-    let directions = [both::<L>(&best), splat(&frame.turned(&axes[2])), boxed.wide.axes[2]];
     let mut apart = 0;
-    // A loop, so that the test is compiled once.
-    for direction in &directions {
-        apart |= boxed.apart_along(direction);
+    // A loop, so that the test is compiled once; a direction that is not tried is not turned.
+    for which in 0..3 {
+        let direction = match which {
+            0 => both::<L>(&best),
+            1 => splat(&frame.turned(&axes[2])),
+            _ => boxed.wide.axes[2],
+        };
+        apart |= boxed.apart_along(&direction);
         if apart & used == used {
             break;
         }

@@ -9,7 +9,7 @@
 //! is at least the value at every vertex in real arithmetic, but for the roundings of the values at those that are computed.
 
 use crate::MeshTree;
-use d2m_lanes::UP;
+use d2m_lanes::{Lanes, Task, UP, run};
 use d2m_mesh::margin::length;
 use d2m_mesh::node::{Below, WIDTH, WideNode};
 use glam::DVec3;
@@ -78,42 +78,59 @@ impl<'t> Furthest<'t> {
     }
 
     /// A value at a corner, and at least the greatest one less the slack, or enough.
-    pub(super) fn about_most(&mut self, along: &Linear, Patience { slack, enough }: Patience) -> f64 {
-        let mut most = self.first(along);
-        let bounds = Bounds::new(self.tree, along);
-        self.waiting.clear();
-        self.waiting.push((f64::INFINITY, 0));
-        while let Some((bound, node)) = self.waiting.pop() {
-            if bound <= most + slack || most > enough {
-                continue;
-            }
-            self.nodes += 1;
-            let first = self.waiting.len();
-            let wide = &self.tree.nodes()[node as usize];
-            for lane in 0..(wide.used as usize).min(WIDTH) {
-                let bound = bounds.of(wide, lane);
-                // What is not a number is no bound.
-                if bound <= most + slack {
-                    continue;
-                }
-                match wide.below(lane) {
-                    Below::Node(node) => self.waiting.push((bound, node)),
-                    Below::Triangle(triangle) => {
-                        let reached = self.most_of(triangle, along);
-                        if reached > most {
-                            (most, self.last) = (reached, triangle);
-                        }
-                    }
-                }
-            }
-            self.waiting[first..].sort_unstable_by(|x, y| x.0.total_cmp(&y.0));
-        }
-        most
+    pub(super) fn about_most(&mut self, along: &Linear, patience: Patience) -> f64 {
+        run(AboutMost { search: self, along, patience })
     }
 
     fn most_of(&self, triangle: u32, along: &Linear) -> f64 {
         let [p, q, r] = self.tree.mesh().corners(triangle as usize);
         along.of(p).max(along.of(q)).max(along.of(r))
+    }
+}
+
+/// One search, compiled for each instruction set: the loop over the boxes of a node becomes vectors of doubles.
+struct AboutMost<'s, 't> {
+    search: &'s mut Furthest<'t>,
+    along: &'s Linear,
+    patience: Patience,
+}
+
+impl Task for AboutMost<'_, '_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> f64 {
+        let Self { search, along, patience: Patience { slack, enough } } = self;
+        let mut most = search.first(along);
+        let bounds = Bounds::new(search.tree, along);
+        search.waiting.clear();
+        search.waiting.push((f64::INFINITY, 0));
+        while let Some((bound, node)) = search.waiting.pop() {
+            if bound <= most + slack || most > enough {
+                continue;
+            }
+            search.nodes += 1;
+            let first = search.waiting.len();
+            let wide = &search.tree.nodes()[node as usize];
+            let bounds = bounds.of_all(wide);
+            for (lane, &bound) in bounds.iter().enumerate().take(wide.used as usize) {
+                // What is not a number is no bound.
+                if bound <= most + slack {
+                    continue;
+                }
+                match wide.below(lane) {
+                    Below::Node(node) => search.waiting.push((bound, node)),
+                    Below::Triangle(triangle) => {
+                        let reached = search.most_of(triangle, along);
+                        if reached > most {
+                            (most, search.last) = (reached, triangle);
+                        }
+                    }
+                }
+            }
+            search.waiting[first..].sort_unstable_by(|x, y| x.0.total_cmp(&y.0));
+        }
+        most
     }
 }
 
@@ -139,6 +156,16 @@ impl Bounds {
             long,
             error: ROUNDINGS * (value.abs() + long * length(from) * UP),
         }
+    }
+
+    /// The bounds of all boxes of a node; of no meaning for lanes that are not used.
+    #[inline(always)]
+    fn of_all(&self, wide: &WideNode) -> [f64; WIDTH] {
+        let mut bounds = [0.0; WIDTH];
+        for (lane, bound) in bounds.iter_mut().enumerate() {
+            *bound = self.of(wide, lane);
+        }
+        bounds
     }
 
     /// No point of the box has a greater value.
