@@ -11,13 +11,13 @@
 use crate::pair::boxes::node_scale::NodeScale;
 use crate::pair::boxes::whole_span::{PlacedPose, SpanFrame};
 use crate::pair::motion::frame::{FAR_ANGLE, PlacedFrame, RelativeMotion};
-use crate::pair::scene::{MovingScene, SceneBody, WINDOW_ANGLE};
+use crate::pair::scene::{MovingScene, WINDOW_ANGLE};
 use crate::walk::best_first::{OneWindow, expander};
 use crate::walk::effort::{LAST_TESTS, MOST_PAIRS_OF_SPAN};
 use crate::walk::queue::{Item, WaitingSpan, WaitingSpans};
 use crate::walk::state::{Outcome, Search, Step, SubWindow};
 use d2m_lanes::{Lanes, Task, run_on};
-use d2m_mesh::node::WIDTH;
+use d2m_mesh::node::{NodeBox, WIDTH, WideNode};
 
 /// A span is halved so often before it is searched.
 const HALVINGS: usize = 4;
@@ -28,12 +28,31 @@ const GRID: usize = 2 << HALVINGS;
 const SPAN: f64 = 8.0;
 const _: () = assert!(0.5 * SPAN * WINDOW_ANGLE < 0.99 * FAR_ANGLE);
 
-/// Whether the larger box of a pair has at least this radius.
-fn is_large(scene: &MovingScene<'_>, item: &Item, least: f64) -> bool {
-    let radius = |body: &SceneBody<'_>, index: u32| {
-        f64::from(body.tree.nodes()[index as usize / WIDTH].radius[index as usize % WIDTH]) * body.box_unit()
-    };
-    radius(&scene.a, item.boxes[0]).max(radius(&scene.b, item.boxes[1])) >= least
+/// The radii of boxes, of A and of B, from which on a pair is divided in a span: nothing rests on how exact they are.
+struct LeastRadii<'a> {
+    nodes: [&'a [WideNode]; 2],
+    least: [f32; 2],
+}
+
+impl<'a> LeastRadii<'a> {
+    /// `way`: how far points go against each other in the span, in the unit of the scene.
+    fn new(scene: &MovingScene<'a>, way: f64) -> Self {
+        let bodies = [&scene.a, &scene.b];
+        Self {
+            nodes: bodies.map(|body| body.tree.nodes()),
+            least: bodies.map(|body| (way / body.box_unit()) as f32),
+        }
+    }
+
+    /// Whether a box of the pair is as large as that.
+    #[inline(always)]
+    fn are_reached(&self, item: &Item) -> bool {
+        let reached = |k: usize| {
+            let NodeBox { node, lane } = NodeBox::new(self.nodes[k], item.boxes[k]);
+            node.radius[lane] >= self.least[k]
+        };
+        reached(0) || reached(1)
+    }
 }
 
 /// The search of one span by dividing it.
@@ -163,11 +182,11 @@ impl Search<'_> {
         let length = (grid.time(span.to) - grid.time(span.from)).next_up();
         let WaitingSpans { pairs, to_expand, .. } = waiting;
         let expander = expander(scene, grid.scales);
-        let large = length * (scene.spin_speed + scene.closing_speed());
+        let large = LeastRadii::new(scene, length * (scene.spin_speed + scene.closing_speed()));
         to_expand.clear();
         for index in span.pairs.0..span.pairs.1 {
             let item = pairs[index];
-            if is_large(scene, &item, large) { to_expand.push(item) } else { pairs.push(item) }
+            if large.are_reached(&item) { to_expand.push(item) } else { pairs.push(item) }
         }
         if to_expand.is_empty() {
             return;
@@ -197,7 +216,9 @@ impl Search<'_> {
                 L::prefetch(&expander.nodes[ahead.side()][ahead.node() as usize]);
             }
             let few = tests < most_tests && pairs.len() + to_expand.len() - next < most;
-            if item.next & Item::TRIANGLES != 0 || !few || !is_large(scene, &item, large) {
+            // Those that were given are known to be large.
+            let is_large = next <= given || large.are_reached(&item);
+            if item.next & Item::TRIANGLES != 0 || !few || !is_large {
                 pairs.push(item);
                 continue;
             }
