@@ -322,3 +322,21 @@ fn moving_starts_are_judged() {
         assert!((contact.normal - DVec3::X).length() < 1e-9);
     }
 }
+
+/// In units so small that underflow takes a part of all lengths it is not known whether bodies within a minimum separation of each other touch
+/// or overlap, and nothing else is said: half of one of these boxes is in the other.
+#[test]
+fn what_underflow_takes_a_part_of_is_undecided() {
+    let turned = DQuat::from_scaled_axis(DVec3::new(0.3, 0.2, 0.1));
+    for (power, expected) in [(-400, StartState::Overlapping), (-498, StartState::Undecided)] {
+        let unit = 2f64.powi(power);
+        let half = DVec3::new(0.5, 0.3, 0.4) * unit;
+        let boxed = cuboid(-half, half);
+        let place = DVec3::new(0.45, 0.2, 0.05) * unit;
+        let other = ConstantTwist::REST.with_position(place).with_orientation(turned);
+        let options = QueryOptions::default().with_tolerance(1e-9 * unit).with_min_separation(0.08 * unit);
+        let bodies = [Moving::new(&boxed, &ConstantTwist::REST), Moving::new(&boxed, &other)];
+        let answer = time_of_contact(bodies[0], bodies[1], Window::UNIT, &options).unwrap();
+        assert_eq!(answer.contact().unwrap().start, expected, "{answer:?}");
+    }
+}

@@ -225,7 +225,9 @@ impl Problem<'_> {
             };
             let rate = -contact.rate(velocity(contact.a), velocity(contact.b));
             let is_moved = moves(state(contact.a)) || moves(state(contact.b));
-            let is_near = contact.row.is_none() && contact.distance <= NEAR * contact.gap;
+            // Also from further off, where bodies make way for it before it has come.
+            let is_met = contact.is_expected || contact.distance <= NEAR * contact.gap;
+            let is_near = contact.row.is_none() && is_met;
             let closing = || Closing { rate, safe: contact.shared_room() / rate };
             (is_near && is_moved && rate > 0.0).then(closing)
         };

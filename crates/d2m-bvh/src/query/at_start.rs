@@ -119,9 +119,9 @@ pub(super) fn meeting_at<'a>(
         }
     }
     let posed = [0, 1].map(|k| Posed::new(bodies[k].body, poses[k]));
-    // A motion that knows nothing of itself at one time is not judged.
+    // Of a motion that knows nothing of itself at one time nothing is proven.
     if !f64::is_finite(blur) {
-        return Ok(None);
+        return Ok(Some(Meeting::Undecided));
     }
     Meeters { bodies: posed, solids, blur, patience: PATIENCE }.meeting(meter)
 }

@@ -190,9 +190,9 @@ impl<'a> Meeters<'a> {
     fn meeting_in_order(&self, meter: &mut Meter) -> Result<Option<Meeting<'a>>, QueryError> {
         let [a, b] = self.bodies;
         let scene = RestingScene::try_blurred(a, b, self.blur)?;
-        // In units so small that underflow takes a part of all lengths nothing is judged.
+        // In units so small that underflow takes a part of all lengths nothing is proven.
         if scene.need.is_nan() || scene.need > MOST_ROUNDING {
-            return Ok(None);
+            return Ok(Some(Meeting::Undecided));
         }
         Ok(self.decide(&scene, meter).unwrap_or(Some(Meeting::Undecided)))
     }
