@@ -209,7 +209,8 @@ pub enum StepError {
         time: f64,
     },
     /// A kinematic body turns or speeds up so fast that flights of constant twists, 4096 in a step, stay no closer to its motion than
-    /// a hundredth of the gap; or its motion encloses itself too widely to show it. Or the flight of any body is beyond the numbers.
+    /// a hundredth of the gap; or its motion encloses itself too widely to show it. Or a dynamic body turns so fast in its joints that flights, 4096
+    /// in a step, tear them by more than the gap, as under a motor of absurd speed. Or the flight of any body is beyond the numbers.
     #[error(
         "at time {time:?}: body {body} moves too fast, or too unevenly, for the step: take a shorter step or a wider gap"
     )]

@@ -24,6 +24,8 @@ const UNSTABLE: f64 = 4.0;
 const LESS: f64 = 0.5;
 /// Halvings of such flights.
 const MOST_HALVINGS: u32 = 6;
+/// Such flights in a step at most, as many as those of a body that follows its motion.
+const MOST_FLIGHTS: f64 = 4096.0;
 /// The part of the rate at which something closes in, and how much more than solutions leave anyway, from which on no velocities obey the law.
 const UNSOLVED: f64 = 1.0 / 8.0;
 /// The part of that rate from which on friction holds what would slip.
@@ -97,13 +99,14 @@ impl Problem<'_> {
         let gained = |tried: &Attempt, end: f64| {
             Gained::of(self.states, &tried.system, self.options, [now, end - now])
         };
+        let shortest = self.options.step / MOST_FLIGHTS;
         for _ in 0..MOST_HALVINGS {
             let is_met = tried.found.missed <= OFF_JOINT * self.speed();
             let before = is_of_joints.then(|| gained(&tried, end)).filter(|gained| gained.is_much());
-            if is_met && before.is_none() {
+            let half = now + 0.5 * (end - now);
+            if is_met && before.is_none() || half - now < shortest {
                 break;
             }
-            let half = now + 0.5 * (end - now);
             let shorter = self.attempt(now, half, Room::Kept);
             // What shorter flights gain as well comes from elsewhere.
             let gains_as_much = |before: Gained| gained(&shorter, half).energy > LESS * before.energy;
@@ -131,6 +134,11 @@ impl Problem<'_> {
         };
         let leaves = Leaves { usual: left, most, fastest: fastest.max(self.speed()) };
         self.squeezed([now, end], closing, leaves, friction).unwrap_or(tried)
+    }
+
+    /// Does a flight tear joints by more than a gap, after which nothing brings their bodies together again?
+    pub(crate) fn is_torn(&self, attempt: &Attempt) -> bool {
+        attempt.found.missed * attempt.span.remaining > self.options.gap
     }
 
     /// The speed of the fastest point of a body.

@@ -31,6 +31,8 @@ pub(crate) struct Solved {
     pub(crate) rests: Vec<ContactPoint>,
     /// How far the rates are from what the law of contacts asks for.
     pub(crate) residual: f64,
+    /// Joints are torn by more than a gap, in flights as short as they may be.
+    pub(crate) is_torn: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -101,6 +103,7 @@ pub(crate) fn solve(
         Problem { members: &members, states: &states, contacts: &island.contacts, options, joints, company };
     let mut attempt = problem.solve(clock);
     let (end, residual) = (attempt.end, attempt.found.residual);
+    let is_torn = problem.is_torn(&attempt);
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
     // Springs and motors may work; what joints alone do is balanced by the middle of flights, not by accounts.
     let driven = states.iter().any(|s| !moves(s) && !s.stands_still())
@@ -146,7 +149,8 @@ pub(crate) fn solve(
         (false, true) => Some(Anchor::World),
         (false, false) => Some(Anchor::Bodies),
     };
-    Solved { bodies: settle(&outcomes, anchor, end, span, options), impacts: hits, rests: kept, residual }
+    let bodies = settle(&outcomes, anchor, end, span, options);
+    Solved { bodies, impacts: hits, rests: kept, residual, is_torn }
 }
 
 /// Impulses of restitution, and what they add to the momenta of each body.

@@ -3,7 +3,7 @@
 use d2m_bvh::MeshTree;
 use d2m_dynamics::{
     Body, BodyId, Joint, JointKind, Kind, Mass, Motor, MotorTarget, Simulation, SimulationError,
-    SimulationOptions, Spring,
+    SimulationOptions, Spring, StepError,
 };
 use glam::{BVec3, DQuat, DVec3};
 use std::sync::Arc;
@@ -159,6 +159,30 @@ fn motors_and_friction_act_with_their_torques() {
     assert!((momentum - 1.7).abs() < 0.01, "{momentum}");
     let (momentum, ..) = spun(&|joint| joint.with_friction(4.0), 2.0 / inertia, 1.0);
     assert!(momentum.abs() < 1e-6, "{momentum}");
+}
+
+/// What joints cannot hold in 4096 flights a step is no motion: the step says which body is too fast, and what was flown before that keeps
+/// the joint. A motor of a thousand radians a second is followed.
+#[test]
+fn motors_of_absurd_speed_are_errors() {
+    for (speed, is_followed) in [(1e3, true), (1e6, false), (1e9, false), (1e30, false)] {
+        let mut simulation = Simulation::new(still()).unwrap();
+        let rotor = bar(&mut simulation, 0.5);
+        let mut motor = Motor::new(MotorTarget::Velocity(speed));
+        motor.most = 1e6 * speed;
+        let hinge = Joint::new(JointKind::Revolute, rotor, None, DVec3::ZERO).with_axis(DVec3::Y);
+        simulation.add_joint(&hinge.with_motor(motor)).unwrap();
+        let outcome = (0..4).try_for_each(|_| simulation.step().map(|_| ()));
+        match outcome {
+            Ok(()) => assert!(is_followed, "{speed:e} is followed"),
+            Err(StepError::TooFast { body, .. }) => {
+                assert!(!is_followed && body == "bar at 0.5", "{speed:e}: {body}");
+            }
+            Err(error) => panic!("{speed:e}: {error}"),
+        }
+        let off = end(&simulation, rotor, -0.5).length();
+        assert!(off <= simulation.options().gap, "{speed:e}: {off} off the hinge");
+    }
 }
 
 /// A weight on a spring comes to rest where the spring carries it.

@@ -5,7 +5,7 @@ use super::{FEW_ITEMS, Occasion, Step};
 use crate::contact::{Company, ContactPoint};
 use crate::flight::Splits;
 use crate::flight_length::Clock;
-use crate::group::{CROWD, Solved, islands, solve};
+use crate::group::{CROWD, Push, Solved, islands, solve};
 use crate::rigid_body::RigidBody;
 use crate::solved_body::moves;
 use crate::velocity::Velocity;
@@ -78,6 +78,9 @@ impl Step<'_> {
         let mut solved_for = vec![false; self.sim.bodies.len()];
         for part in solved {
             self.report.residual = self.report.residual.max(part.residual);
+            if part.is_torn {
+                return Err(self.too_fast(&part, time));
+            }
             for push in &part.bodies {
                 let body = &mut self.sim.bodies[push.body];
                 body.push(push.impact);
@@ -116,6 +119,14 @@ impl Step<'_> {
             self.sim.recorder.change(self.sim.bodies[i].id, self.sim.bodies[i].flight);
         }
         self.query(time, &changed)
+    }
+
+    /// The error that names the fastest of some bodies.
+    fn too_fast(&self, part: &Solved, time: f64) -> StepError {
+        let speed = |push: &&Push| push.velocity.surface_speed(self.sim.bodies[push.body].radius);
+        let fastest = part.bodies.iter().max_by(|x, y| speed(x).total_cmp(&speed(y)));
+        let body = fastest.map_or_else(String::new, |push| self.sim.bodies[push.body].name.to_string());
+        StepError::TooFast { body, time }
     }
 
     /// Kinematic members begin their next flight if the last one ends here.
