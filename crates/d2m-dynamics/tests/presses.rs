@@ -121,42 +121,45 @@ fn rows_make_way_for_what_is_about_to_come() {
     }
 }
 
-/// Columns of five boxes, each off the others by up to a millionth, end so, too, with what room is left shared by all: no body stands still
+/// Columns of five and ten boxes, each off the others by up to a millionth, end so, too, with what room is left shared by all: no body stands still
 /// before, and less than a ten-thousandth of a gap is left.
 #[test]
 fn columns_that_are_not_straight_are_crushed() {
+    (0..8).for_each(|beginning| column_is_crushed(5, 0.3, beginning));
+    (8..10).for_each(|beginning| column_is_crushed(10, 0.8, beginning));
+}
+
+/// One of so many boxes, with such friction.
+fn column_is_crushed(count: u32, friction: f64, beginning: u32) {
     /// Boxes are off the axis by up to a hundred times this.
     const STEP_ASIDE: f64 = 1e-8;
     let cube = tree("box?x=0.3&y=0.3&z=0.3");
-    for beginning in 0..8u32 {
-        let step = 0.005 + 0.0013 * f64::from(beginning);
-        let mut simulation = Simulation::new(SimulationOptions::default().with_step(step)).unwrap();
-        simulation.add(&slab(1.0).with_friction(0.3)).unwrap();
-        for k in 0..5 {
-            let off = |n: u32| STEP_ASIDE * (f64::from((37 * n * n + 11 * n) % 201) - 100.0);
-            let place = DVec3::new(
-                off(10 * beginning + k),
-                0.301 + 0.601 * f64::from(k),
-                off(10 * beginning + k + 5),
-            );
-            let body = Body::new(format!("box {k}"), Arc::clone(&cube)).with_position(place);
-            simulation.add(&body.with_friction(0.3)).unwrap();
-        }
-        let press = pushed("press", "box?x=1&y=0.2&z=1", DVec3::Y * 3.7, DVec3::Y * -0.501);
-        simulation.add(&press.with_friction(0.3)).unwrap();
-        let error = loop {
-            match simulation.step() {
-                Ok(report) => {
-                    assert!(report.segments.iter().all(|segment| segment.skipped == 0.0), "{beginning}");
-                }
-                Err(error) => break error,
-            }
-        };
-        let StepError::Crushed { time, .. } = error else { panic!("{beginning}: {error:?}") };
-        let skipped: f64 = simulation.finish().iter().map(|segment| segment.skipped).sum();
-        let left = 0.5 - 0.501 * time;
-        assert!(skipped == 0.0 && left > 0.0 && left < 1e-7, "{beginning}: {left:e}, {skipped:e}");
+    let step = 0.005 + 0.0013 * f64::from(beginning);
+    let mut simulation = Simulation::new(SimulationOptions::default().with_step(step)).unwrap();
+    simulation.add(&slab(1.0).with_friction(friction)).unwrap();
+    for k in 0..count {
+        let off = |n: u32| STEP_ASIDE * (f64::from((37 * n * n + 11 * n) % 201) - 100.0);
+        let height = 0.301 + 0.601 * f64::from(k);
+        let place = DVec3::new(off(10 * beginning + k), height, off(10 * beginning + k + 5));
+        let body = Body::new(format!("box {k}"), Arc::clone(&cube)).with_position(place);
+        simulation.add(&body.with_friction(friction)).unwrap();
     }
+    let high = 0.6 * f64::from(count);
+    let press = pushed("press", "box?x=1&y=0.2&z=1", DVec3::Y * (high + 0.7), DVec3::Y * -0.501);
+    simulation.add(&press.with_friction(friction)).unwrap();
+    let error = loop {
+        match simulation.step() {
+            Ok(report) => {
+                let skipped = report.segments.iter().any(|segment| segment.skipped != 0.0);
+                assert!(!skipped, "{count}, {beginning}");
+            }
+            Err(error) => break error,
+        }
+    };
+    let StepError::Crushed { time, .. } = error else { panic!("{count}, {beginning}: {error:?}") };
+    let skipped: f64 = simulation.finish().iter().map(|segment| segment.skipped).sum();
+    let left = 0.5 - 0.501 * time;
+    assert!(skipped == 0.0 && left > 0.0 && left < 1e-7, "{count}, {beginning}: {left:e}, {skipped:e}");
 }
 
 /// A press that stops just where a box has no room left: rounding decides, and no proof is found. Nothing is claimed then.
