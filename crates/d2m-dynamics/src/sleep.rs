@@ -181,7 +181,7 @@ mod tests {
     use super::*;
     use crate::contact::upright;
     use crate::pairs::Pair;
-    use crate::{Body, SimulationOptions};
+    use crate::{Body, Kind, SimulationOptions};
     use d2m_bvh::MeshTree;
     use std::sync::Arc;
 
@@ -204,5 +204,32 @@ mod tests {
             simulation.wake_beside_moved();
             assert_eq!(simulation.bodies[0].asleep, !wakes);
         }
+    }
+
+    /// Boxes on the ground that happen to hop, so that nothing presses on them as the step ends: of a crowd they fall asleep within the gap
+    /// of what bears them, and not above it.
+    #[test]
+    fn what_hops_among_many_is_borne_by_what_is_near() {
+        let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.2&y=0.2&z=0.2").unwrap()));
+        let slab = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=9&y=0.5&z=9").unwrap()));
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        let ground = Body::new("ground", slab).with_kind(Kind::Static).with_position(DVec3::NEG_Y * 0.5);
+        simulation.add(&ground).unwrap();
+        for k in 0..=CROWD {
+            let place = DVec3::new((k % 9) as f64 - 4.0, 0.201, (k / 9) as f64 - 4.0);
+            simulation.add(&Body::new("", Arc::clone(&cube)).with_position(place)).unwrap();
+        }
+        simulation.step().unwrap();
+        let high = 7;
+        for (&(_, body), pair) in &mut simulation.pairs {
+            for contact in &mut pair.contacts {
+                contact.impulse = 0.0;
+                contact.distance *= if body == high { 10.0 } else { 1.0 };
+            }
+        }
+        (0..3).for_each(|_| simulation.put_to_sleep(1.0));
+        let awake = |&i: &usize| simulation.bodies[i].is_dynamic() && !simulation.bodies[i].asleep;
+        let awake: Vec<usize> = (0..simulation.bodies.len()).filter(awake).collect();
+        assert_eq!(awake, [high]);
     }
 }
