@@ -60,7 +60,7 @@ pub(crate) struct Problem<'s> {
     /// Body numbers, ascending, and the bodies, with their impacts.
     pub(crate) members: &'s [usize],
     pub(crate) states: &'s [Cow<'s, RigidBody>],
-    pub(crate) contacts: &'s [ContactPoint],
+    pub(crate) contacts: &'s [&'s ContactPoint],
     pub(crate) options: &'s SimulationOptions,
     pub(crate) joints: &'s [Joined],
     pub(crate) company: Company,
@@ -96,18 +96,21 @@ impl Attempt {
     /// Takes a solution whose spins are not put right: corrections lead further off where impulses have bodies turn far in a flight, of the middle of
     /// which nothing is known then, and each would make them faster.
     fn go_back(&mut self, solved: FirstSolved) {
-        (self.found, self.system.bodies) = (solved.found, solved.bodies);
+        (self.found.residual, self.found.pulled) = (solved.residual, solved.pulled);
+        self.system.bodies = solved.bodies;
         self.system.take_back(solved.present);
+        self.system.store(&mut self.found.contacts);
     }
 
     /// Puts the couples that brake the bodies behind the other contacts.
-    pub(crate) fn couple(&mut self, members: &[usize]) {
+    fn couple(&mut self, members: &[usize]) {
         self.found.contacts.truncate(self.found.targets.len());
         self.found.contacts.extend(couples(&self.system, members, &self.found.pulled));
     }
 
-    /// Velocities of flights that also restore the gap, or make room for rotation; what kinetic energy that adds. None: there is nothing to
-    /// restore, or no velocities are found that keep what room there is as long as the present ones do, which stay then.
+    /// Velocities of flights that also restore the gap, or make room for rotation; what kinetic energy that adds. The contacts keep the impulses that
+    /// they have. None: there is nothing to restore, or no velocities are found that keep what room there is as long as the present ones do,
+    /// which stay then.
     pub(crate) fn make_room(&mut self, inertia: &[(f64, DMat3)]) -> Option<f64> {
         if self.found.targets == self.found.pushing {
             return None;
@@ -119,8 +122,13 @@ impl Attempt {
             self.system.take_back(begun);
             return None;
         }
-        self.system.store(&mut self.found.contacts);
         Some(0.5 * (self.system.doubled_energy(inertia) - before))
+    }
+
+    /// Gives the contacts the impulses of the present velocities.
+    pub(crate) fn store(&mut self, members: &[usize]) {
+        self.system.store(&mut self.found.contacts);
+        self.couple(members);
     }
 
     /// The part of what restores the gap at a contact that makes up for what the velocities are off the law.
@@ -193,7 +201,7 @@ impl Problem<'_> {
         };
         let free: Vec<SolverBody> = states.iter().map(start).collect();
         let rows = select(self.contacts, span, |body| free[place(body)].velocity);
-        let contacts: Vec<ContactPoint> = rows.iter().map(|row| self.contacts[row.contact]).collect();
+        let contacts: Vec<ContactPoint> = rows.iter().map(|row| *self.contacts[row.contact]).collect();
         let targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
         let precision = PRECISION * options.gap / options.step;
         let slow = span.resting_speed.max(options.gap / options.step);
@@ -238,7 +246,8 @@ impl Problem<'_> {
             let off = put_right(system, states, &found.contacts, span, place, &found.pulled);
             let is_off = off > tolerance;
             if let Some((bodies, present)) = solved.filter(|_| is_off) {
-                first_solved = Some(FirstSolved { found: found.clone(), bodies, present, off });
+                let (residual, pulled) = (found.residual, found.pulled.clone());
+                first_solved = Some(FirstSolved { residual, pulled, bodies, present, off });
             }
             let ends = Ends { joints: self.joints, states, span };
             let missed = ends.miss(system, &found.contacts, place);
@@ -285,7 +294,8 @@ impl Problem<'_> {
 
 /// A solution whose spins are not put right.
 struct FirstSolved {
-    found: Found,
+    residual: f64,
+    pulled: Vec<Option<Pull>>,
     bodies: Vec<SolverBody>,
     present: Present,
     /// By how much spins and angular momenta were off each other, as a speed.

@@ -159,6 +159,7 @@ impl Problem<'_> {
         }
         let ahead = Ahead { length: end - now, step: self.options.step, forces: false };
         let (contacts, joints) = locked(self.members, self.states, self.contacts, self.joints, ahead)?;
+        let contacts: Vec<&ContactPoint> = contacts.iter().collect();
         let attempt = Problem { contacts: &contacts, joints: &joints, ..*self }.attempt(now, end, Room::Kept);
         (attempt.found.missed <= OFF_JOINT * self.speed() && attempt.may_last()).then_some(attempt)
     }
@@ -189,7 +190,8 @@ impl Problem<'_> {
         leaves: Leaves,
         friction: Friction,
     ) -> Option<Attempt> {
-        let contacts: Vec<ContactPoint> = self.contacts.iter().map(ContactPoint::without_friction).collect();
+        let contacts: Vec<ContactPoint> = self.contacts.iter().map(|c| c.without_friction()).collect();
+        let contacts: Vec<&ContactPoint> = contacts.iter().collect();
         let smooth = Problem { contacts: &contacts, ..*self };
         let slipping = smooth.attempt(now, end, Room::Kept);
         let obeys = |attempt: &Attempt, most: f64| attempt.found.residual <= most && attempt.may_last();
@@ -240,7 +242,7 @@ impl Problem<'_> {
             (is_near && is_moved && rate > 0.0).then(closing)
         };
         let worst = |x: Closing, y: Closing| Closing { rate: x.rate.max(y.rate), safe: x.safe.min(y.safe) };
-        self.contacts.iter().filter_map(of).reduce(worst)
+        self.contacts.iter().filter_map(|contact| of(contact)).reduce(worst)
     }
 }
 

@@ -58,8 +58,8 @@ fn energy_of_motion(state: &RigidBody, velocity: Velocity) -> f64 {
 }
 
 /// Do joints connect these bodies, and nothing else work on them: neither motors and springs, nor forces, nor what follows its motion?
-pub(crate) fn is_of_joints_alone(states: &[Cow<'_, RigidBody>], contacts: &[ContactPoint]) -> bool {
-    let works = |contact: &ContactPoint| match contact.row.map(|row| (row.law, row.target)) {
+pub(crate) fn is_of_joints_alone(states: &[Cow<'_, RigidBody>], contacts: &[&ContactPoint]) -> bool {
+    let works = |contact: &&ContactPoint| match contact.row.map(|row| (row.law, row.target)) {
         Some((Law::Range { lo, hi, softness }, rate)) => {
             softness > 0.0 || rate != 0.0 && lo.is_finite() && hi.is_finite()
         }

@@ -18,8 +18,8 @@ use std::borrow::Cow;
 pub(crate) const CROWD: usize = 64;
 /// The contacts of bodies that impulses connect, bodies by their numbers.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Island {
-    pub(crate) contacts: Vec<ContactPoint>,
+pub(crate) struct Island<'c> {
+    pub(crate) contacts: Vec<&'c ContactPoint>,
 }
 
 /// What an island's bodies get: velocities of the next flight and additions to the momenta.
@@ -49,7 +49,7 @@ pub(crate) struct Push {
 }
 
 /// The islands of some contacts: bodies that impulses move connect, the others do not. In the order of their first contact.
-pub(crate) fn islands(bodies: &[RigidBody], contacts: Vec<ContactPoint>) -> Vec<Island> {
+pub(crate) fn islands<'c>(bodies: &[RigidBody], contacts: Vec<&'c ContactPoint>) -> Vec<Island<'c>> {
     let mut parent: Vec<usize> = (0..bodies.len()).collect();
     let moves = |i: usize| moves(&bodies[i]);
     for c in contacts.iter().filter(|c| moves(c.a) && moves(c.b)) {
@@ -70,7 +70,7 @@ pub(crate) fn islands(bodies: &[RigidBody], contacts: Vec<ContactPoint>) -> Vec<
     if sizes.len() == 1 {
         return vec![Island { contacts }];
     }
-    let mut found: Vec<Island> =
+    let mut found: Vec<Island<'_>> =
         sizes.into_iter().map(|size| Island { contacts: Vec::with_capacity(size) }).collect();
     for (contact, number) in contacts.into_iter().zip(numbers) {
         found[number].contacts.push(contact);
@@ -81,7 +81,7 @@ pub(crate) fn islands(bodies: &[RigidBody], contacts: Vec<ContactPoint>) -> Vec<
 /// Impacts, then the velocities of the flights that begin now. The contacts' impulses are where the iteration begins.
 pub(crate) fn solve(
     bodies: &[RigidBody],
-    island: &Island,
+    island: &Island<'_>,
     clock: Clock,
     options: &SimulationOptions,
     joints: &[Joined],
@@ -110,7 +110,6 @@ pub(crate) fn solve(
         || island.contacts.iter().any(|c| c.row.is_some() || c.running != [0.0; 2]);
     let mut rests = vec![Momenta::default(); members.len()];
     add(&attempt.found.contacts, &mut rests, place);
-    let mut kept = attempt.found.contacts.clone();
     // What restores the gap, or makes room for rotation, moves the bodies in this flight and leaves no momentum.
     let velocities = |system: &System| system.bodies.iter().map(|body| body.velocity).collect::<Vec<_>>();
     let mut physical = velocities(&attempt.system);
@@ -124,10 +123,9 @@ pub(crate) fn solve(
         let most: f64 = states.iter().filter(|s| moves(s)).map(held).sum();
         if gained.abs() > most {
             // Then it is made by impulses like others, and the account sees to their energy.
-            attempt.couple(&members);
+            attempt.store(&members);
             rests.fill(Momenta::default());
             add(&attempt.found.contacts, &mut rests, place);
-            kept.clone_from(&attempt.found.contacts);
             physical = velocities(&attempt.system);
         }
     }
@@ -150,7 +148,7 @@ pub(crate) fn solve(
         (false, false) => Some(Anchor::Bodies),
     };
     let bodies = settle(&outcomes, anchor, end, span, options);
-    Solved { bodies, impacts: hits, rests: kept, residual, is_torn }
+    Solved { bodies, impacts: hits, rests: attempt.found.contacts, residual, is_torn }
 }
 
 /// Impulses of restitution, and what they add to the momenta of each body.
@@ -163,17 +161,18 @@ struct Impacts {
 /// that bounce keeps energy then, as the rod of a pendulum does.
 fn impacts_of(
     states: &[Cow<'_, RigidBody>],
-    island: &Island,
+    island: &Island<'_>,
     options: &SimulationOptions,
     place: impl Fn(usize) -> usize + Copy,
 ) -> Impacts {
     let mut momenta = vec![Momenta::default(); states.len()];
-    let is_hit = |c: &&ContactPoint| c.material.restitution > 0.0 && c.distance <= HIT * c.gap;
-    let hit: Vec<ContactPoint> = island.contacts.iter().filter(is_hit).copied().collect();
+    let is_hit = |c: &ContactPoint| c.material.restitution > 0.0 && c.distance <= HIT * c.gap;
+    let hit: Vec<ContactPoint> = island.contacts.iter().copied().filter(|c| is_hit(c)).copied().collect();
     if hit.is_empty() {
         return Impacts { contacts: hit, momenta };
     }
-    let equations = island.contacts.iter().filter(|c| c.row.is_some_and(|row| row.equation.is_some()));
+    let equations =
+        island.contacts.iter().copied().filter(|c| c.row.is_some_and(|row| row.equation.is_some()));
     let hit: Vec<ContactPoint> = hit.into_iter().chain(equations.copied()).collect();
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
     let start = |s: &Cow<'_, RigidBody>| {

@@ -17,12 +17,12 @@ use std::borrow::Cow;
 pub(crate) fn locked(
     members: &[usize],
     states: &[Cow<'_, RigidBody>],
-    contacts: &[ContactPoint],
+    contacts: &[&ContactPoint],
     joints: &[Joined],
     ahead: Ahead,
 ) -> Option<(Vec<ContactPoint>, Vec<Joined>)> {
     let place = |body: usize| members.binary_search(&body).unwrap_or_default();
-    let mut numbers: Vec<usize> = contacts.iter().filter_map(ContactPoint::joint).collect();
+    let mut numbers: Vec<usize> = contacts.iter().filter_map(|contact| contact.joint()).collect();
     numbers.dedup();
     numbers.retain(|&number| joints[number].is_between_bodies());
     if !closes_chain(&numbers, states, joints, place) {
@@ -30,7 +30,7 @@ pub(crate) fn locked(
     }
     let mut held = joints.to_vec();
     let is_replaced = |contact: &&ContactPoint| contact.joint().is_some_and(|joint| numbers.contains(&joint));
-    let mut rows: Vec<ContactPoint> = contacts.iter().filter(|c| !is_replaced(c)).copied().collect();
+    let mut rows: Vec<ContactPoint> = contacts.iter().filter(|c| !is_replaced(c)).map(|c| **c).collect();
     for number in numbers {
         let pair = joints[number].bodies.map(|body| &*states[place(body)]);
         held[number] = joints[number].fixed_at(pair);

@@ -60,9 +60,9 @@ pub(crate) struct Row {
 /// rate ≥ max(0, (0.45 g − d)/τ + m τ/2)        within it; and what is missing to the gap, a quarter of it a step
 /// rate ≥ p (5/8 min(g, d) − d)/τ + m τ/2       if room is shared: p = 4 min(g, d) over the greatest of these, from 1/4 to 1
 /// ```
-pub(crate) fn select(found: &[ContactPoint], span: Span, velocity: impl Fn(usize) -> Velocity) -> Vec<Row> {
+pub(crate) fn select(found: &[&ContactPoint], span: Span, velocity: impl Fn(usize) -> Velocity) -> Vec<Row> {
     let mut rows = Vec::new();
-    let widest = found.iter().filter(|c| c.row.is_none()).map(near).fold(0.0, f64::max);
+    let widest = found.iter().filter(|c| c.row.is_none()).map(|c| near(c)).fold(0.0, f64::max);
     for (k, contact) in found.iter().enumerate() {
         if let Some(row) = contact.row {
             rows.push(Row { contact: k, target: row.target, pushing: row.pushing });
@@ -123,6 +123,7 @@ mod tests {
         let span = Span { remaining: 1.0, step: 1.0, resting_speed: 1.0, room: Room::Shared };
         let targets = |distances: &[f64]| -> Vec<f64> {
             let contacts: Vec<ContactPoint> = distances.iter().map(|&d| at(d)).collect();
+            let contacts: Vec<&ContactPoint> = contacts.iter().collect();
             select(&contacts, span, |_| Velocity::default()).iter().map(|row| row.target).collect()
         };
         assert_eq!(targets(&[1.0, 0.5, 0.125, 0.015625]), [-0.375, -0.1875, -0.0234375, -0.00146484375]);

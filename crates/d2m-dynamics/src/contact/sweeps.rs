@@ -19,20 +19,21 @@ impl System {
         let mut wide = self.wide.take().unwrap_or_else(|| Wide::new(&self.bodies, &self.blocks));
         wide.fill(self.numbers(targets));
         let mut off = wide.sweep(0, None);
-        let mut best = (off.most, wide.kept());
+        let (mut best, mut kept) = (off.most, wide.kept());
         let mut descent = (pace == Pace::Conjugate).then(Descent::default);
         let mut done = 0;
         while !self.is_swept(off, accuracy) && done < most {
             off = wide.sweep(BETWEEN / 2, descent.as_mut());
             wide.move_bodies(&mut self.bodies);
             done += BETWEEN;
-            if off.most < best.0 || pace == Pace::Steady {
-                best = (off.most, wide.kept());
+            if off.most < best || pace == Pace::Steady {
+                best = off.most;
+                wide.keep(&mut kept);
             }
         }
         // What goes on along a way may be further off for a while.
-        if off.most > best.0 && !self.is_swept(off, accuracy) {
-            wide.take_back(best.1);
+        if off.most > best && !self.is_swept(off, accuracy) {
+            wide.take_back(kept);
         }
         wide.move_bodies(&mut self.bodies);
         wide.write(&mut self.impulses);

@@ -85,12 +85,11 @@ impl Step<'_> {
     /// instant, and has the solution begin with a part of them; the bodies that had some.
     pub(super) fn retract(&mut self, group: &mut Group, part: f64) -> Vec<usize> {
         let bodies = &mut self.sim.bodies;
-        let is_inner = |c: &ContactPoint| {
+        let is_inner = |c: &mut ContactPoint| {
             [c.a, c.b].into_iter().all(|i| group.is_member[i] || !group.may_move(&bodies[i]))
                 && (group.is_member[c.a] || group.is_member[c.b])
         };
-        let (inner, outer): (Vec<_>, Vec<_>) = self.undoable.drain(..).partition(is_inner);
-        self.undoable = outer;
+        let inner: Vec<ContactPoint> = self.undoable.extract_if(.., is_inner).collect();
         for contact in &inner {
             let parts =
                 [(contact.a, -contact.momenta(contact.arm_a)), (contact.b, contact.momenta(contact.arm_b))];

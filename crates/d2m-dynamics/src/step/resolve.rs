@@ -57,7 +57,7 @@ impl Step<'_> {
         let scope = if is_local && !self.has_joints { Scope::Nearby } else { Scope::Connected };
         let solved = self.solve_in_rounds(&mut group, seeds, clock, occasion, scope)?;
         if !matches!(occasion, Occasion::Plan { .. } | Occasion::Expected) {
-            self.impulses.append(&mut self.undoable);
+            append(&mut self.impulses, core::mem::take(&mut self.undoable));
         }
         if occasion == Occasion::Start {
             let bodies = &self.sim.bodies;
@@ -167,8 +167,7 @@ impl Step<'_> {
             group.warm(&part.rests, 1.0);
         }
         let settled = |i: usize| group.is_member[i] || !group.may_move(&bodies[i]);
-        let mut within = Vec::with_capacity(group.contacts.len());
-        within.extend(group.contacts.iter().filter(|c| settled(c.a) && settled(c.b)));
+        let within = group.contacts.iter().filter(|c| settled(c.a) && settled(c.b)).collect();
         let mut known: BTreeMap<usize, Solved> = BTreeMap::new();
         for part in before {
             if let Some(first) = part.bodies.first() {
@@ -321,14 +320,14 @@ impl Step<'_> {
                 }
             }
         }
-        self.impulses.extend(solved.impacts);
-        self.undoable.extend(solved.rests);
+        append(&mut self.impulses, solved.impacts);
+        append(&mut self.undoable, solved.rests);
     }
 
     /// The impulses of the present instant are those of the segment that ends here.
     pub(super) fn report_impulses(&mut self) {
-        self.impulses.append(&mut self.undoable);
-        for contact in self.impulses.drain(..).filter(|contact| contact.row.is_none()) {
+        let [first, last] = [&mut self.impulses, &mut self.undoable].map(core::mem::take);
+        for contact in first.iter().chain(&last).filter(|contact| contact.row.is_none()) {
             let impulse = contact.total();
             if impulse != DVec3::ZERO {
                 let impulse = ContactImpulse {
@@ -348,6 +347,15 @@ impl Step<'_> {
                 self.sim.begin_touch((contact.a, contact.b), impulse.time);
             }
         }
+    }
+}
+
+/// Puts contacts behind others. They are large: behind none they are not copied.
+fn append(contacts: &mut Vec<ContactPoint>, mut others: Vec<ContactPoint>) {
+    if contacts.is_empty() {
+        *contacts = others;
+    } else {
+        contacts.append(&mut others);
     }
 }
 

@@ -45,7 +45,7 @@ pub(super) struct Group<S> {
     /// The blocks' places in the system.
     places: Vec<[Option<usize>; 4]>,
     pub(super) impulses: Vec<[Quad; 3]>,
-    /// The impulses before two sweeps.
+    /// The impulses before the last sweep forth, the first of two.
     begun: Vec<[Quad; 3]>,
     way: Vec<[Quad; 3]>,
     pub(super) count: usize,
@@ -173,6 +173,9 @@ impl<S: Side> Group<S> {
             for m in 0..batch.rows.len() {
                 let k = if order == Order::Forth { batch.rows.start + m } else { batch.rows.end - 1 - m };
                 let (Row { side, asked }, own) = (&self.rows[k], load::<D>(&self.impulses[k]));
+                if order == Order::Forth {
+                    self.begun[k] = self.impulses[k];
+                }
                 let wanted = side.relaxed(asked, &side.rates(&ends), &own);
                 batch.push(&mut ends, &side.pushes(&minus(&wanted, &own)));
                 self.impulses[k] = store(&wanted);
@@ -199,11 +202,6 @@ impl<S: Side> Group<S> {
             }
         }
         Left { most: most.max_element(), sum: total(sum), has_room: lacks.max_element() == 0.0 }
-    }
-
-    /// Two sweeps follow.
-    pub(super) fn begin(&mut self) {
-        self.begun.copy_from_slice(&self.impulses);
     }
 
     /// What sweeps have changed is the way to go on.

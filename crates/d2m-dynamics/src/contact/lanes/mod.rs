@@ -91,6 +91,13 @@ impl Wide {
         (self.velocities.clone(), self.cones.impulses.clone(), self.lines.impulses.clone())
     }
 
+    /// The same in place of what has been kept of it before.
+    pub(super) fn keep(&self, (velocities, cones, lines): &mut Kept) {
+        velocities.copy_from_slice(&self.velocities);
+        cones.copy_from_slice(&self.cones.impulses);
+        lines.copy_from_slice(&self.lines.impulses);
+    }
+
     pub(super) fn take_back(&mut self, (velocities, cones, lines): Kept) {
         (self.velocities, self.cones.impulses, self.lines.impulses) = (velocities, cones, lines);
     }
@@ -164,10 +171,6 @@ impl Task for Round<'_> {
     fn run<L: Lanes>(self) -> Off {
         let Self { wide, mut descent, twice } = self;
         for _ in 0..twice {
-            if descent.is_some() {
-                wide.cones.begin();
-                wide.lines.begin();
-            }
             wide.sweep_once::<L::Doubles>(Order::Forth);
             wide.sweep_once::<L::Doubles>(Order::Back);
             if let Some(descent) = &mut descent {
