@@ -11,6 +11,7 @@ use crate::momenta::Momenta;
 use crate::pull::{couples, pulls, work};
 use crate::rigid_body::RigidBody;
 use crate::solved_body::{body_at, moves, still, world_inertia};
+use crate::taut::of_closed_chains;
 use crate::turning::Pull;
 use crate::velocity::Velocity;
 use glam::{DMat3, DVec3};
@@ -155,13 +156,26 @@ impl Attempt {
 }
 
 impl Problem<'_> {
-    /// Do joints connect bodies of unlike masses?
-    fn hangs_by_light_bodies(&self) -> bool {
-        let rows = self.contacts.iter().filter(|contact| contact.row.is_some());
-        let ends = rows.flat_map(|contact| [contact.a, contact.b]).map(|body| &self.states[self.place(body)]);
+    /// Do joints connect bodies of unlike masses, or hold one between others? Closed chains of like ones stop where they are pulled taut.
+    fn may_be_braked(&self) -> bool {
+        let rows = || self.contacts.iter().filter(|contact| contact.row.is_some());
+        let ends =
+            rows().flat_map(|contact| [contact.a, contact.b]).map(|body| &self.states[self.place(body)]);
         let masses = ends.filter(|s| moves(s)).map(|s| s.mass);
         let (least, most) = masses.fold((f64::INFINITY, 0.0f64), |(lo, hi), m| (lo.min(m), hi.max(m)));
-        most > LIKE * least
+        let is_open = || of_closed_chains(self.members, self.states, self.contacts, self.joints).is_none();
+        most > LIKE * least || self.has_chain() && is_open()
+    }
+
+    /// Does more than one joint hold a body?
+    fn has_chain(&self) -> bool {
+        let mut numbers: Vec<usize> = self.contacts.iter().filter_map(|contact| contact.joint()).collect();
+        numbers.dedup();
+        let joints = numbers.into_iter().map(|number| &self.joints[number]).filter(|j| j.is_between_bodies());
+        let ends = joints.flat_map(|joined| joined.bodies);
+        let mut held: Vec<usize> = ends.filter(|&body| moves(&self.states[self.place(body)])).collect();
+        held.sort_unstable();
+        held.windows(2).any(|two| two[0] == two[1])
     }
 
     pub(crate) fn place(&self, body: usize) -> usize {
@@ -170,7 +184,7 @@ impl Problem<'_> {
 
     /// With brakes on what oscillates fast, unless these do work that counts.
     pub(crate) fn attempt(&self, now: f64, end: f64, room: Room) -> Attempt {
-        if self.hangs_by_light_bodies() {
+        if self.may_be_braked() {
             let braked = self.attempt_with(now, end, room, Brakes::OfOscillations);
             if self.is_quietly_braked(&braked) {
                 return braked;
@@ -179,12 +193,16 @@ impl Problem<'_> {
         self.attempt_with(now, end, room, Brakes::None)
     }
 
-    /// Do the brakes add no energy that counts? What forces have pulled taut for longer than a flight turns little, and gives back what the
-    /// brakes took; where something snaps taut they could add any.
+    /// Do the brakes add no energy that counts, against what bodies have, or would have after a fall of one step? What forces have pulled taut for longer
+    /// than a flight turns little, and gives back what the brakes took; where something snaps taut they could add any.
     fn is_quietly_braked(&self, attempt: &Attempt) -> bool {
         let work = work(&attempt.system, &attempt.found.pulled);
         let inertia: Vec<(f64, DMat3)> = self.states.iter().map(|s| world_inertia(s)).collect();
-        work <= WORK * attempt.system.doubled_energy(&inertia)
+        let fall = |s: &Cow<'_, RigidBody>| {
+            (s.force_with(self.options.gravity) * self.options.step).length_squared() * s.inverse_mass
+        };
+        let fallen: f64 = self.states.iter().filter(|s| moves(s)).map(fall).sum();
+        work <= WORK * attempt.system.doubled_energy(&inertia).max(fallen)
     }
 
     fn attempt_with(&self, now: f64, end: f64, room: Room, brakes: Brakes) -> Attempt {

@@ -22,12 +22,7 @@ pub(crate) fn locked(
     ahead: Ahead,
 ) -> Option<(Vec<ContactPoint>, Vec<Joined>)> {
     let place = |body: usize| members.binary_search(&body).unwrap_or_default();
-    let mut numbers: Vec<usize> = contacts.iter().filter_map(|contact| contact.joint()).collect();
-    numbers.dedup();
-    numbers.retain(|&number| joints[number].is_between_bodies());
-    if !closes_chain(&numbers, states, joints, place) {
-        return None;
-    }
+    let numbers = of_closed_chains(members, states, contacts, joints)?;
     let mut held = joints.to_vec();
     let is_replaced = |contact: &&ContactPoint| contact.joint().is_some_and(|joint| numbers.contains(&joint));
     let mut rows: Vec<ContactPoint> = contacts.iter().filter(|c| !is_replaced(c)).map(|c| **c).collect();
@@ -37,6 +32,20 @@ pub(crate) fn locked(
         rows.extend(held[number].rows(number, pair, ahead));
     }
     Some((rows, held))
+}
+
+/// The numbers of the joints that hold these bodies to others, in order. None: they close no chain.
+pub(crate) fn of_closed_chains(
+    members: &[usize],
+    states: &[Cow<'_, RigidBody>],
+    contacts: &[&ContactPoint],
+    joints: &[Joined],
+) -> Option<Vec<usize>> {
+    let place = |body: usize| members.binary_search(&body).unwrap_or_default();
+    let mut numbers: Vec<usize> = contacts.iter().filter_map(|contact| contact.joint()).collect();
+    numbers.dedup();
+    numbers.retain(|&number| joints[number].is_between_bodies());
+    closes_chain(&numbers, states, joints, place).then_some(numbers)
 }
 
 /// Do these joints close a chain?

@@ -64,6 +64,37 @@ fn a_bridge_without_slack_holds() {
     assert!((-0.02..0.03).contains(&height), "{height}");
 }
 
+/// Chains that hang straight stay so: of like bars, the upper ones of which swing faster than steps follow, and under a load ten thousand times as heavy. Rounding
+/// made them swing, in flights of hundredths of a step.
+#[test]
+fn chains_that_hang_straight_stay_so() {
+    for (bars, step, load) in [(60, 1.0 / 30.0, None), (30, 0.01, Some(1e4))] {
+        let mut simulation = Simulation::new(SimulationOptions::default().with_step(step)).unwrap();
+        let bar = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.02&y=0.08&z=0.02").unwrap()));
+        let mut last = None;
+        let mut ids = Vec::new();
+        let masses = (0..bars).map(|_| 0.4).chain(load.map(|ratio| 0.4 * ratio));
+        for (k, mass) in masses.enumerate() {
+            let top = DVec3::NEG_Y * (0.2 * f64::from(k as u32));
+            let body = Body::new("", Arc::clone(&bar)).with_mass(Mass::Total(mass));
+            let id = simulation.add(&body.with_position(top - DVec3::Y * 0.1)).unwrap();
+            let pin = Joint::new(JointKind::Revolute, id, last, top).with_axis(DVec3::Z);
+            simulation.add_joint(&pin).unwrap();
+            last = Some(id);
+            ids.push(id);
+        }
+        let mut flights = 0;
+        while simulation.time() < 1.0 {
+            flights += simulation.step().unwrap().segments.len();
+        }
+        assert!(f64::from(flights as u32) <= 1.1 / step, "{flights}");
+        for id in ids {
+            let (v, w) = (simulation.linear_velocity(id), simulation.angular_velocity(id));
+            assert!(v.length() < 1e-6 && w.length() < 1e-6, "{load:?}: {v} {w}");
+        }
+    }
+}
+
 /// A parallelogram whose bars all lie on one line twice a turn goes through it, although corrections of joints diverge there: nothing pulls its bars
 /// to and fro.
 #[test]
