@@ -9,6 +9,7 @@ use crate::measured::Measured;
 use crate::momenta::Momenta;
 use crate::nested::{apart_along_axis_until, bound_from_centers};
 use crate::rigid_body::RigidBody;
+use crate::start::size;
 #[cfg(feature = "audit")]
 use d2m_bvh::audit::Place;
 use d2m_bvh::{
@@ -28,6 +29,9 @@ const SLACK: f64 = 0.0625;
 /// query's tolerance, a sixteenth of the separation, is then 2⁻⁴⁴ of them, which the rounding of placed points (fewer than
 /// 40 operations of 2⁻⁵³ each) reaches with the next halvings.
 const LEAST: f64 = 1.0 / (1u64 << 30) as f64;
+/// Of a gap that is wider than this part of its bodies only so much counts for that: bodies that touched at the start have 2⁻³⁶ of their size at first,
+/// whatever the gap is.
+const WIDE: f64 = 1.0 / 1024.0;
 
 /// Features of a pair from which on fewer are sought, and up to which more are.
 const MANY: usize = 128;
@@ -184,7 +188,8 @@ pub(crate) fn fly(
     }
     let window = Window::try_new(until, window.end())?;
     let mut separation = pair.separation();
-    while separation >= LEAST * pair.gap {
+    let least = LEAST * pair.gap.min(WIDE * size([a, b]));
+    while separation >= least {
         let options = QueryOptions::default()
             .with_solid(solid_of(a, b))
             .with_min_separation(separation)

@@ -299,7 +299,7 @@ impl Simulation {
 }
 
 /// The radius of the larger body, or how far from the origin they are.
-fn size(bodies: [&RigidBody; 2]) -> f64 {
+pub(crate) fn size(bodies: [&RigidBody; 2]) -> f64 {
     bodies.iter().map(|body| body.radius.max(body.position.length())).fold(0.0, f64::max)
 }
 

@@ -200,6 +200,21 @@ fn boxes_that_touch_part_to_the_gap() {
     }
 }
 
+/// Also where the gap is wide: what they are parted by first is a part of their size, and not of the gap.
+#[test]
+fn boxes_that_touch_part_to_a_wide_gap() {
+    for gap in [0.01, 0.03] {
+        let mut simulation = Simulation::new(SimulationOptions::default().with_gap(gap)).unwrap();
+        simulation.add(&floor()).unwrap();
+        let shape = cube();
+        let below = simulation.add(&body(0, &shape, 0.5 + gap)).unwrap();
+        let above = simulation.add(&body(1, &shape, 1.5 + gap)).unwrap();
+        assert_eq!(run(&mut simulation, 1.0).skipped, 0.0, "{gap}");
+        let y = simulation.position(above).y - simulation.position(below).y;
+        assert!((y - 1.0 - gap).abs() < 0.2 * gap, "{gap}: {y}");
+    }
+}
+
 /// Those that start closer than the gap stay where they are.
 #[test]
 fn boxes_that_start_a_billionth_apart_rest() {
