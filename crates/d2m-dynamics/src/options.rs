@@ -22,8 +22,8 @@ pub struct SimulationOptions {
     pub step: f64,
     /// The distance that resting bodies keep. Default 1e-3.
     pub gap: f64,
-    /// Contact events a step at most; after that the bodies concerned stand still until the end of the step, and
-    /// [`Segment::skipped`](crate::Segment::skipped) says so. Default 128.
+    /// Contact events a step at most, besides 16 times as many of bodies that something drives, and 256 times as many at which others bounce; after
+    /// that the bodies concerned stand still until the end of the step, and [`Segment::skipped`](crate::Segment::skipped) says so. Default 128.
     pub max_events: u32,
     /// Node tests of one pair query at most. A query that meets the limit ends the flight early, at a certified time. Default 2²².
     pub node_tests: u64,

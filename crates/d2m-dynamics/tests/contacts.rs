@@ -181,6 +181,26 @@ fn a_cradle_passes_on_one() {
     }
 }
 
+/// What a wall and a body a million times as heavy throw to and fro turns that back: three thousand hits, nearly all in one step.
+#[test]
+fn light_boxes_turn_back_heavy_ones() {
+    let options = SimulationOptions::default().with_gravity(DVec3::ZERO).with_gap(1e-4);
+    let mut simulation = Simulation::new(options).unwrap();
+    let shape = cube();
+    simulation.add(&Body::new("wall", Arc::clone(&shape)).with_kind(Kind::Static)).unwrap();
+    let mut one = |name: &str, mass: f64, x: f64, v: f64| {
+        let body = Body::new(name, Arc::clone(&shape)).with_mass(Mass::Total(mass)).with_restitution(1.0);
+        let body = body.with_position(DVec3::X * x).with_linear_velocity(DVec3::X * v);
+        simulation.add(&body).unwrap()
+    };
+    let (light, heavy) = (one("light", 1.0, 1.5, 0.0), one("heavy", 1e6, 2.7, -1.0));
+    let ran = run(&mut simulation, 0.4);
+    assert_eq!(ran.skipped, 0.0);
+    assert!(ran.events > 3000, "{}", ran.events);
+    let [v, w] = [light, heavy].map(|id| simulation.linear_velocity(id).x);
+    assert!(w > 0.999 && ((w * w + 1e-6 * v * v) - 1.0).abs() < 1e-9, "{v} {w}");
+}
+
 /// Boxes that touch are accepted, and part to the gap; so do those that are nearer than queries resolve.
 #[test]
 fn boxes_that_touch_part_to_the_gap() {

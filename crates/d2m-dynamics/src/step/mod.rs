@@ -32,6 +32,10 @@ const MOST_AT_ONCE: u32 = 8;
 /// Events of bodies that follow their motions, for each that a step has: what stands still in their way would be crushed.
 const DRIVEN: u32 = 16;
 
+/// Events at which bodies bounce, for each that a step has: what bounces to and fro between a wall and a body r times as heavy that comes towards it does
+/// so π √r times until that has turned back, 31 416 times at 10⁸, and nearly all of that may be in one step.
+const BOUNCES: u32 = 256;
+
 /// The part of a gap at which friction has locked what a body that follows its motion pushes: the room has been halved twenty times, and can be
 /// halved ten times more.
 const LOCKED: f64 = 1.0 / 1_048_576.0;
@@ -71,6 +75,8 @@ pub(crate) struct Step<'s> {
     holding: bool,
     /// What friction has locked in the way of what follows its motion: it slides freely until the step ends.
     slips: BTreeSet<usize>,
+    /// Events so far at which bodies bounced.
+    bounces: u32,
     replans: Replans,
     /// The end of flights that were planned anew.
     planned: Option<f64>,
@@ -113,6 +119,7 @@ impl<'s> Step<'s> {
             report: StepReport::default(),
             holding: false,
             slips: BTreeSet::new(),
+            bounces: 0,
             replans: Replans::default(),
             planned: None,
             expected: Expected::default(),
@@ -174,14 +181,17 @@ impl<'s> Step<'s> {
             self.sim.time = event.time;
             let held = |i: usize| self.sim.bodies[i].held;
             let most = self.sim.options.max_events;
-            let over = [most, most.saturating_mul(DRIVEN)].map(|most| self.report.events >= most);
+            let others = self.report.events - self.bounces;
+            let over = [most, most.saturating_mul(DRIVEN)].map(|most| others >= most);
+            let has_bounced = self.bounces >= most.saturating_mul(BOUNCES);
             let (hold, go_on): (Vec<Event>, Vec<Event>) = met.into_iter().partition(|event| {
                 let count = last.1.entry(event.bodies).or_default();
                 *count += 1;
                 // Also flights that end again and again at one time: a step ends, whatever comes.
                 let again = *count > MOST_AT_ONCE;
                 let is_driven = event.bodies.into_iter().any(|i| self.sim.bodies[i].is_driven());
-                let over = over[usize::from(is_driven)] || !is_driven && event.bodies.into_iter().any(held);
+                let over = if self.bounces_at(event) { has_bounced } else { over[usize::from(is_driven)] };
+                let over = over || !is_driven && event.bodies.into_iter().any(held);
                 let stops = over || event.cause == Cause::Stuck;
                 again || event.cause != Cause::Horizon && stops
             });
@@ -189,6 +199,7 @@ impl<'s> Step<'s> {
                 self.release(event.time, &seeds);
                 self.report.events +=
                     go_on.iter().filter(|event| event.cause != Cause::Horizon).count() as u32;
+                self.bounces += go_on.iter().filter(|event| self.bounces_at(event)).count() as u32;
                 self.let_slip(&go_on);
                 let is_cramped = go_on.iter().any(|event| self.is_cramped(event));
                 let occasion = if is_cramped { Occasion::Cramped } else { Occasion::Event };
@@ -215,6 +226,15 @@ impl<'s> Step<'s> {
 
     fn is_current(&self, event: &Event) -> bool {
         (0..2).all(|k| self.sim.bodies[event.bodies[k]].version == event.versions[k])
+    }
+
+    /// Do bodies bounce there that nothing drives?
+    fn bounces_at(&self, event: &Event) -> bool {
+        let [a, b] = event.bodies;
+        event.cause == Cause::Contact
+            && !event.bodies.into_iter().any(|i| self.sim.bodies[i].is_driven())
+            && event.closing > self.sim.options.resting_speed()
+            && self.sim.material(a, b).restitution > 0.0
     }
 
     /// Do these bodies meet at less than the distance at which they stopped before?

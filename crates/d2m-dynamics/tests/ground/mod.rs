@@ -41,7 +41,7 @@ pub(crate) fn counted(simulation: &mut Simulation, end: f64) -> Run {
     let mut run = Run { skipped: 0.0, events: 0 };
     while simulation.time() < end {
         let report = simulation.step().unwrap();
-        assert!(report.events <= simulation.options().max_events + simulation.len() as u32);
+        assert!(report.events <= 256 * simulation.options().max_events + simulation.len() as u32);
         run.events += report.events;
         run.skipped += report.segments.iter().map(|s| s.skipped).sum::<f64>();
     }
