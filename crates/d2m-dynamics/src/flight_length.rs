@@ -157,7 +157,9 @@ impl Problem<'_> {
         {
             return None;
         }
-        let ahead = Ahead { length: end - now, step: self.options.step, forces: false };
+        // The joints of the chain are rigid then, and have no motors.
+        let ahead =
+            Ahead { length: end - now, step: self.options.step, forces: false, passed: 0.0, spent: 0.0 };
         let (contacts, joints) = locked(self.members, self.states, self.contacts, self.joints, ahead)?;
         let contacts: Vec<&ContactPoint> = contacts.iter().collect();
         let attempt = Problem { contacts: &contacts, joints: &joints, ..*self }.attempt(now, end, Room::Kept);

@@ -2,7 +2,7 @@
 
 use crate::SimulationError;
 use crate::contact::{ContactPoint, JointRow, Law, Material, tangents};
-use crate::joint::{Joint, JointKind, MotorTarget};
+use crate::joint::{Joint, JointKind, Motor, MotorTarget};
 use crate::numbers::{FINITE, NOT_NEGATIVE, UNUSABLE, is_small};
 use crate::rigid_body::RigidBody;
 use crate::shown::{shown, shown_turn};
@@ -35,8 +35,11 @@ pub(crate) struct Joined {
 pub(crate) struct Ahead {
     pub(crate) length: f64,
     pub(crate) step: f64,
-    /// Do springs and motors act? Not at an event: they have acted for the whole step.
+    /// Do springs, soft motors and friction act? Not at an event: they have acted for the whole step.
     pub(crate) forces: bool,
+    /// How much of the step has passed, and what the joint's motor has pushed in it.
+    pub(crate) passed: f64,
+    pub(crate) spent: f64,
 }
 
 /// The joint of these bodies is refused for a value.
@@ -265,7 +268,8 @@ impl Joined {
             made.arms[0] = arms[0] + (points[1] - points[0]);
         }
         let law = Law::Range { lo: f64::NEG_INFINITY, hi: f64::INFINITY, softness: 0.0 };
-        let equal = JointRow { is_angular: false, law, pushing: 0.0, target: 0.0, equation: None };
+        let equal =
+            JointRow { is_angular: false, law, pushing: 0.0, target: 0.0, equation: None, is_motor: false };
         let (linear, angular) = self.directions(pair[0].orientation);
         for direction in linear {
             made.add(direction, equal);
@@ -293,6 +297,7 @@ impl Joined {
             pushing,
             target,
             equation: None,
+            is_motor: false,
         };
         let h = ahead.length;
         if let Some([lo, hi]) = self.joint.limits {
@@ -301,6 +306,16 @@ impl Joined {
                 let target = if room >= 0.0 { -room / h } else { -TAKEN_BACK * room / ahead.step };
                 made.add(direction, row(push, target.min(0.0), target));
             }
+        }
+        let motor = self.joint.motor;
+        if let Some((motor, rate)) =
+            motor.and_then(|motor| Some((motor, motor.hard_rate(value, ahead.step)?)))
+        {
+            // In a step that is flown in parts it sees to its rate in each of them, with what it has not spent of its impulse so far.
+            let most = motor.most * (ahead.passed + h);
+            let [lo, hi] = [(-most - ahead.spent).min(0.0), (most - ahead.spent).max(0.0)];
+            let law = Law::Range { lo, hi, softness: 0.0 };
+            made.add(axis, JointRow { is_motor: true, ..row(law, rate, rate) });
         }
         if !ahead.forces {
             return;
@@ -314,21 +329,27 @@ impl Joined {
             let (law, rate) = soft(spring.stiffness, spring.damping, spring.rest - value, f64::INFINITY);
             made.add(axis, row(law, rate, rate));
         }
-        if let Some(motor) = self.joint.motor {
-            let most = motor.most;
-            let hard = Law::Range { lo: -most * h, hi: most * h, softness: 0.0 };
-            let (law, rate) = match motor.target {
-                MotorTarget::Velocity(rate) => (hard, rate),
-                MotorTarget::Position(place) if motor.stiffness > 0.0 => {
-                    soft(motor.stiffness, motor.damping, place - value, most)
-                }
-                MotorTarget::Position(place) => (hard, TAKEN_BACK * (place - value) / ahead.step),
-            };
+        if let Some(motor) = motor
+            && let MotorTarget::Position(place) = motor.target
+            && motor.stiffness > 0.0
+        {
+            let (law, rate) = soft(motor.stiffness, motor.damping, place - value, motor.most);
             made.add(axis, row(law, rate, rate));
         }
         if self.joint.friction > 0.0 {
             let most = self.joint.friction * h;
             made.add(axis, row(Law::Range { lo: -most, hi: most, softness: 0.0 }, 0.0, 0.0));
+        }
+    }
+}
+
+impl Motor {
+    /// The rate that it sees to at once, where it is not soft.
+    fn hard_rate(&self, value: f64, step: f64) -> Option<f64> {
+        match self.target {
+            MotorTarget::Velocity(rate) => Some(rate),
+            MotorTarget::Position(_) if self.stiffness > 0.0 => None,
+            MotorTarget::Position(place) => Some(TAKEN_BACK * (place - value) / step),
         }
     }
 }

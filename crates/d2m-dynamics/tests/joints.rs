@@ -161,6 +161,39 @@ fn motors_and_friction_act_with_their_torques() {
     assert!(momentum.abs() < 1e-6, "{momentum}");
 }
 
+/// A motor that turns a crank, which pushes a slider a thousand times as heavy to and fro over a rod: where a step is flown in parts it sees to its
+/// speed in each of them, and its torque is that of the step.
+#[test]
+fn motors_turn_cranks_at_their_speed() {
+    let mut simulation = Simulation::new(still().with_step(0.002)).unwrap();
+    let mut part = |name: &str, length: f64, at: DVec3, angle: f64, density: f64| {
+        let shape = format!("box?x={}&y=0.025&z=0.025", 0.5 * length);
+        let shape = Arc::new(MeshTree::new(d2m_shapes::mesh(&shape).unwrap()));
+        let body = Body::new(name, shape).with_mass(Mass::Density(density)).with_position(at);
+        simulation.add(&body.with_orientation(DQuat::from_rotation_z(angle))).unwrap()
+    };
+    let angle = 0.5_f64;
+    let pin = DVec3::new(angle.cos(), angle.sin(), 0.0) * 0.3;
+    let cross = DVec3::X * (pin.x + (1.0 - pin.y * pin.y).sqrt());
+    let tilt = (-pin.y).atan2(cross.x - pin.x);
+    let crank = part("crank", 0.27, pin * 0.5, angle, 1000.0);
+    let rod = part("rod", 0.9, (pin + cross) * 0.5, tilt, 1000.0);
+    let slider = part("slider", 0.2, cross, 0.0, 1e6);
+    let hinge = |a: BodyId, b: Option<BodyId>, at: DVec3| {
+        Joint::new(JointKind::Revolute, a, b, at).with_axis(DVec3::Z)
+    };
+    let mut motor = Motor::new(MotorTarget::Velocity(-20.0));
+    motor.most = 1e12;
+    let driven = simulation.add_joint(&hinge(crank, None, DVec3::ZERO).with_motor(motor)).unwrap();
+    simulation.add_joint(&hinge(crank, Some(rod), pin)).unwrap();
+    simulation.add_joint(&hinge(rod, Some(slider), cross)).unwrap();
+    let way = Joint::new(JointKind::Prismatic, slider, None, cross).with_axis(DVec3::X);
+    simulation.add_joint(&way).unwrap();
+    run(&mut simulation, 1.0);
+    let turned = simulation.joint_value(driven);
+    assert!((turned + 20.0 * simulation.time()).abs() < 1e-3, "{turned}");
+}
+
 /// What joints cannot hold in 4096 flights a step is no motion: the step says which body is too fast, and what was flown before that keeps
 /// the joint. A motor of a thousand radians a second is followed.
 #[test]

@@ -48,6 +48,8 @@ pub(crate) struct JointRow {
     pub(crate) target: f64,
     /// The number of the joint and of its equation, whose rate follows from where the flight ends.
     pub(crate) equation: Option<[usize; 2]>,
+    /// Of a motor, whose impulses of a step add up.
+    pub(crate) is_motor: bool,
 }
 
 /// A pair of closest features of two bodies, and the impulse between them.
@@ -129,7 +131,14 @@ impl ContactPoint {
             point: DVec3::ZERO,
             material: Material { restitution: 0.0, friction: 0.0 },
             running: [0.0; 2],
-            row: Some(JointRow { is_angular: false, law, pushing: 0.0, target: 0.0, equation: None }),
+            row: Some(JointRow {
+                is_angular: false,
+                law,
+                pushing: 0.0,
+                target: 0.0,
+                equation: None,
+                is_motor: false,
+            }),
             impulse,
             sliding: [0.0; 2],
         })

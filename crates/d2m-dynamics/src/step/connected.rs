@@ -122,7 +122,8 @@ impl Step<'_> {
     fn admit_joints(&self, group: &mut Group, of: &[usize], time: f64, occasion: Occasion) -> Vec<usize> {
         let sim = &*self.sim;
         let end = if let Occasion::Plan { until } = occasion { until } else { self.end };
-        let ahead = Ahead { length: end - time, step: sim.options.step, forces: !occasion.is_event() };
+        let (step, passed) = (sim.options.step, time - self.start);
+        let ahead = Ahead { length: end - time, step, forces: !occasion.is_event(), passed, spent: 0.0 };
         let mut next = Vec::new();
         for (number, joined) in sim.joints.iter().enumerate() {
             let Err(place) = group.joints.binary_search(&number) else { continue };
@@ -130,6 +131,7 @@ impl Step<'_> {
                 continue;
             }
             group.joints.insert(place, number);
+            let ahead = Ahead { spent: self.spent.get(&number).copied().unwrap_or_default(), ..ahead };
             group.contacts.extend(joined.rows(number, joined.bodies.map(|i| &sim.bodies[i]), ahead));
             let is_new =
                 |i: &usize| !group.is_member[*i] && sim.bodies[*i].is_dynamic() && !sim.bodies[*i].held;

@@ -77,6 +77,8 @@ pub(crate) struct Step<'s> {
     slips: BTreeSet<usize>,
     /// Events so far at which bodies bounced.
     bounces: u32,
+    /// The impulses of motors so far, by joint.
+    spent: BTreeMap<usize, f64>,
     replans: Replans,
     /// The end of flights that were planned anew.
     planned: Option<f64>,
@@ -120,6 +122,7 @@ impl<'s> Step<'s> {
             holding: false,
             slips: BTreeSet::new(),
             bounces: 0,
+            spent: BTreeMap::new(),
             replans: Replans::default(),
             planned: None,
             expected: Expected::default(),

@@ -327,7 +327,13 @@ impl Step<'_> {
     /// The impulses of the present instant are those of the segment that ends here.
     pub(super) fn report_impulses(&mut self) {
         let [first, last] = [&mut self.impulses, &mut self.undoable].map(core::mem::take);
-        for contact in first.iter().chain(&last).filter(|contact| contact.row.is_none()) {
+        let impulses = || first.iter().chain(&last);
+        for contact in impulses().filter(|contact| contact.row.is_some_and(|row| row.is_motor)) {
+            if let Some(number) = contact.joint() {
+                *self.spent.entry(number).or_default() += contact.impulse;
+            }
+        }
+        for contact in impulses().filter(|contact| contact.row.is_none()) {
             let impulse = contact.total();
             if impulse != DVec3::ZERO {
                 let impulse = ContactImpulse {

@@ -41,6 +41,7 @@ fn drawn(state: &mut u64, count: usize) -> (System, Vec<f64>) {
                     pushing: 0.0,
                     target: 0.0,
                     equation: None,
+                    is_motor: false,
                 };
                 contacts.push(ContactPoint {
                     normal,
