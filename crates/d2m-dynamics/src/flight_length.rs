@@ -101,7 +101,7 @@ impl Problem<'_> {
         };
         let shortest = self.options.step / MOST_FLIGHTS;
         for _ in 0..MOST_HALVINGS {
-            let is_met = tried.found.missed <= OFF_JOINT * self.speed();
+            let is_met = tried.found.missed <= OFF_JOINT * self.speed() && !self.turns_over(&tried);
             let before = is_of_joints.then(|| gained(&tried, end)).filter(|gained| gained.is_much());
             let half = now + 0.5 * (end - now);
             if is_met && before.is_none() || half - now < shortest {
@@ -138,7 +138,18 @@ impl Problem<'_> {
 
     /// Does a flight tear joints by more than a gap, after which nothing brings their bodies together again?
     pub(crate) fn is_torn(&self, attempt: &Attempt) -> bool {
-        attempt.found.missed * attempt.span.remaining > self.options.gap
+        attempt.found.missed * attempt.span.remaining > self.options.gap || self.turns_over(attempt)
+    }
+
+    /// Does a joint go round a center by half a turn or more in a flight? Then where the flight ends says no more which way that was: joints are met
+    /// there by any whole turns.
+    fn turns_over(&self, attempt: &Attempt) -> bool {
+        let goes_round = |body: usize, arm: DVec3| {
+            let spin = attempt.system.bodies[self.place(body)].velocity.angular;
+            spin.cross(arm).length() * attempt.span.remaining > core::f64::consts::PI * arm.length()
+        };
+        let equations = self.contacts.iter().filter(|c| c.row.is_some_and(|row| row.equation.is_some()));
+        equations.into_iter().any(|c| goes_round(c.a, c.arm_a) || goes_round(c.b, c.arm_b))
     }
 
     /// The speed of the fastest point of a body.
