@@ -2,9 +2,9 @@
 //! to be one motion is searched.
 
 use d2m_bvh::{
-    Budget, ClearanceOptions, ClearanceStatus, MeshTree, Moving, PairCache, QueryOptions, SpanStatus, Start,
-    StartState, TriMesh, Window, clearance, contact_exists, contact_spans, departure, time_of_contact,
-    time_of_contact_batch, time_of_contact_counted, time_of_contact_with,
+    Budget, ClearanceOptions, ClearanceStatus, MeshTree, Moving, PairCache, QueryError, QueryOptions,
+    SpanStatus, Start, StartState, TriMesh, Window, clearance, contact_exists, contact_spans, departure,
+    time_of_contact, time_of_contact_batch, time_of_contact_counted, time_of_contact_with,
 };
 use d2m_feature::triangle_distance;
 use d2m_interval::{Interval, IntervalVec3};
@@ -164,4 +164,113 @@ fn what_only_seems_one_motion_is_searched() {
     let kind = JointKind::Prismatic { axis: DVec3::X, value };
     let slide = base.and(Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, kind).unwrap()).unwrap();
     assert!(meet(&base, &slide) && meet(&slide, &base));
+}
+
+/// A link that turns by `rate` in unit time, and a slide on it that comes in to two tenths before the end.
+fn links(rate: f64) -> [Chain; 2] {
+    let base = Chain::try_new(vec![joint(DVec3::Y, DVec3::Z, rate)]).unwrap();
+    let value = JointValue::try_polynomial(vec![2.0, -2.0]).unwrap();
+    let kind = JointKind::Prismatic { axis: DVec3::X, value };
+    let slide = base.and(Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, kind).unwrap()).unwrap();
+    [base, slide]
+}
+
+/// Turns beyond what sines are known of: how the links meet is known, and where in the world they do is not.
+#[test]
+fn places_that_nothing_is_known_of_are_refused() {
+    let box_of_links = cuboid_at(DVec3::ZERO, 0.25);
+    let options = QueryOptions::default();
+    let bad = QueryError::BadMotion { body: 0 };
+    for (rate, is_known) in [(400.0, true), (1e20, false)] {
+        let [base, slide] = links(rate);
+        let [a, b] = [&base, &slide].map(|link| Moving::new(&box_of_links, link));
+        let found = time_of_contact(a, b, Window::UNIT, &options);
+        let cached = time_of_contact_with(a, b, Window::UNIT, &options, &mut PairCache::new());
+        let leaving = time_of_contact(a, b, Window::UNIT, &options.with_start(Start::Leave));
+        let parting = departure(a, b, Window::UNIT, &options).map(|parting| parting.answer);
+        let nearest = clearance(a, b, Window::UNIT, &ClearanceOptions::default());
+        assert_eq!(contact_exists(a, b, Window::UNIT, &options, &mut PairCache::new()), Ok(Some(true)));
+        let early = Window::try_new(0.0, 0.5).unwrap();
+        assert!(time_of_contact(a, b, early, &options).unwrap().is_separated());
+        if !is_known {
+            for answer in [found, cached, leaving, parting] {
+                assert_eq!(answer, Err(bad.clone()));
+            }
+            assert_eq!(nearest, Err(bad.clone()));
+            continue;
+        }
+        let contact = *found.unwrap().contact().expect("they meet");
+        let nearest = nearest.unwrap();
+        for (time, normal, points) in [
+            (contact.time_lo, contact.normal, [contact.point_a, contact.point_b]),
+            (nearest.time, nearest.normal, [nearest.point_a, nearest.point_b]),
+        ] {
+            let pose = base.pose_and_twist(time).0;
+            assert!(
+                (time - 0.75).abs() < 1e-9 && (normal - pose.transform_vector(DVec3::X)).length() < 1e-12
+            );
+            for point in points {
+                let place = pose.inverse_transform_point(point);
+                assert!((place.x - 0.25).abs() < 1e-9 && place.abs().max_element() < 0.25 + 1e-9);
+            }
+        }
+    }
+}
+
+/// Says nothing of itself but its pose, in any numbers.
+struct Posed(Pose);
+
+impl RigidMotion for Posed {
+    fn pose_and_twist(&self, _: f64) -> (Pose, Twist) {
+        (self.0, Twist::ZERO)
+    }
+    fn enclose_pose(&self, _: Interval) -> IntervalPose {
+        let any = IntervalVec3 { x: Interval::ENTIRE, y: Interval::ENTIRE, z: Interval::ENTIRE };
+        IntervalPose { translation: any, ..IntervalPose::IDENTITY }
+    }
+    fn enclose_twist(&self, _: Interval) -> IntervalTwist {
+        IntervalTwist { linear: IntervalVec3::ZERO, angular: IntervalVec3::ZERO }
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.enclose_twist(t)
+    }
+}
+
+/// A quaternion stands for the rotation that it has divided by its length; a pose that is no number places nothing.
+#[test]
+fn poses_of_any_numbers_place_what_they_carry() {
+    let [first, second] = [0.0, 0.8].map(|x| cuboid_at(DVec3::X * x, 0.5));
+    let turn = DQuat::from_rotation_z(0.7);
+    let answers = |rotation: DQuat, at: DVec3| {
+        let motion = Posed(Pose { rotation, translation: DVec3::Y, at });
+        let [a, b] = [&first, &second].map(|tree| Moving::new(tree, &motion));
+        let found = time_of_contact(a, b, Window::UNIT, &QueryOptions::default());
+        let nearest = clearance(a, b, Window::UNIT, &ClearanceOptions::default());
+        (found.map(|answer| answer.contact().copied()), nearest)
+    };
+    let (contact, nearest) = answers(turn, DVec3::ZERO);
+    let (contact, nearest) = (contact.unwrap().expect("they overlap"), nearest.unwrap());
+    for length in [1.0 + 1e-9, 3.0] {
+        let (longer, wider) = answers(turn * length, DVec3::ZERO);
+        let (longer, wider) = (longer.unwrap().expect("they overlap"), wider.unwrap());
+        for (is, was) in [
+            (
+                [longer.normal, longer.point_a, longer.point_b],
+                [contact.normal, contact.point_a, contact.point_b],
+            ),
+            (
+                [wider.normal, wider.point_a, wider.point_b],
+                [nearest.normal, nearest.point_a, nearest.point_b],
+            ),
+        ] {
+            for (is, was) in is.into_iter().zip(was) {
+                assert!((is - was).length() < 1e-14, "{length}: {is} {was}");
+            }
+        }
+    }
+    for (rotation, at) in [(turn * 0.0, DVec3::ZERO), (turn, DVec3::splat(f64::INFINITY))] {
+        let (found, nearest) = answers(rotation, at);
+        assert!(matches!(found, Ok(None) | Err(QueryError::BadMotion { .. })), "{found:?}");
+        assert!(nearest.map_or(true, |nearest| nearest.status == ClearanceStatus::Undecided));
+    }
 }

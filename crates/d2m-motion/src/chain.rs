@@ -6,7 +6,7 @@ use crate::{
     RigidMotion, Twist,
 };
 use d2m_interval::Interval;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
 /// A link of an articulated arm: pose(t) = ∏ T(xᵢ, qᵢ)·Jᵢ(valueᵢ(t)), from the base to the link.
 ///
@@ -154,12 +154,7 @@ impl Chain {
 impl RigidMotion for Chain {
     fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
         let now = self.state_at(t);
-        let pose = Pose {
-            rotation: DQuat::from_mat3(&now.rotation).normalize(),
-            translation: now.position.center + now.position_tail,
-            at: DVec3::ZERO,
-        };
-        (pose, Twist { linear: now.linear.center, angular: now.angular.center })
+        (now.middle_pose(), Twist { linear: now.linear.center, angular: now.angular.center })
     }
 
     /// Over long spans part by part.

@@ -457,3 +457,29 @@ fn compositions_and_retimed_motions_enclose_themselves() {
     .unwrap();
     assert!(Retimed::try_new(path, 2.0, 0.0).unwrap_err().to_string().contains("joint at the time 1.0"));
 }
+
+/// Turns and ways beyond all bounds: plain poses do not make one up, neither do those of motions that hold the chain.
+#[test]
+fn poses_of_what_is_not_known_are_no_numbers() {
+    let value = |rate: f64| JointValue::try_polynomial(vec![0.0, rate]).unwrap();
+    let axis = DVec3::Z;
+    let turn = |rate: f64| JointKind::Revolute { axis, value: value(rate) };
+    let slide = |rate: f64| JointKind::Prismatic { axis, value: value(rate) };
+    let link = |kind| Chain::try_new(vec![Joint::try_new(DVec3::X, DQuat::IDENTITY, kind).unwrap()]).unwrap();
+    let poses = |chain: &Chain, t: f64| {
+        [
+            chain.pose_and_twist(t).0,
+            Composed::new(ConstantTwist::REST, chain).pose_and_twist(t).0,
+            Retimed::try_new(chain, 0.3, 0.7 * t).unwrap().pose_and_twist(t).0,
+        ]
+    };
+    for pose in poses(&link(turn(1e20)), 1.0) {
+        assert!(pose.rotation.is_nan() && pose.translation == DVec3::X, "{pose:?}");
+    }
+    for pose in poses(&link(slide(1e308)), 10.0) {
+        assert!(pose.translation.is_nan() && pose.rotation == DQuat::IDENTITY, "{pose:?}");
+    }
+    for pose in poses(&link(turn(1e8)), 1.0).into_iter().chain(poses(&link(slide(1e300)), 1.0)) {
+        assert!(pose.rotation.is_finite() && pose.translation.is_finite(), "{pose:?}");
+    }
+}

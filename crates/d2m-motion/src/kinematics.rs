@@ -1,10 +1,10 @@
 //! Pose, twist and twist rate over a span of time, each a middle value with a proven radius.
 use crate::ball::{Ball, length_up, product_radius, up};
 use crate::rounding::UNIT;
-use crate::{CertifiedState, IntervalPose, IntervalTwist};
+use crate::{CertifiedState, IntervalPose, IntervalTwist, Pose};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
 use d2m_lanes::two_sum;
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 
 /// No two rotations are farther apart than this in the operator norm (and the middle is one up to rounding).
 const ANY_ROTATION: f64 = 2.0 + 1e-9;
@@ -111,6 +111,17 @@ impl Kinematics {
             position_radius: up(self.position.radius + rounding),
             linear_radius: self.linear.radius,
             angular_radius: self.angular.radius,
+        }
+    }
+
+    /// The pose in the middle, in plain floating point; what nothing is known of is no number.
+    pub(crate) fn middle_pose(&self) -> Pose {
+        let is_turned = self.rotation_radius < ANY_ROTATION;
+        let is_placed = self.position.radius < f64::INFINITY;
+        Pose {
+            rotation: if is_turned { DQuat::from_mat3(&self.rotation).normalize() } else { DQuat::NAN },
+            translation: if is_placed { self.position.center + self.position_tail } else { DVec3::NAN },
+            at: self.at,
         }
     }
 

@@ -5,7 +5,7 @@ use crate::rounding::UNIT;
 use crate::{CertifiedState, IntervalPose, IntervalTwist, Kinematics, MotionError, Pose, RigidMotion, Twist};
 use d2m_interval::Interval;
 use d2m_lanes::{two_product, two_sum};
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DVec3};
 
 /// A smooth motion at another pace: at time t where the given one is at `rate·t + offset`.
 ///
@@ -179,11 +179,8 @@ impl<M: RigidMotion> RigidMotion for Retimed<M> {
         let (pose, twist) = if rest == 0.0 {
             self.motion.pose_and_twist(center)
         } else {
-            let Kinematics { rotation, position, position_tail, at, linear, angular, .. } =
-                self.inner_state(t);
-            let rotation = DQuat::from_mat3(&rotation).normalize();
-            let pose = Pose { rotation, translation: position.center + position_tail, at };
-            (pose, Twist { linear: linear.center, angular: angular.center })
+            let state = self.inner_state(t);
+            (state.middle_pose(), Twist { linear: state.linear.center, angular: state.angular.center })
         };
         (pose, Twist { linear: twist.linear * self.rate, angular: twist.angular * self.rate })
     }
@@ -248,6 +245,7 @@ impl<M: RigidMotion> RigidMotion for Retimed<M> {
 mod tests {
     use super::*;
     use crate::{Chain, ConstantTwist, Joint, JointKind, JointValue, Spline, SplineDegree};
+    use glam::DQuat;
 
     fn unit(seed: &mut u64) -> f64 {
         *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

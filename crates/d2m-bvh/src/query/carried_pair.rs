@@ -6,7 +6,7 @@
 //! or given by equal numbers.
 
 use crate::covered_pair::CoveredPair;
-use crate::{Clearance, Contact, Moving, TimeOfContact};
+use crate::{Clearance, Contact, Moving, QueryError, TimeOfContact};
 use d2m_motion::{Chain, ConstantTwist, Pose, RigidMotion};
 use glam::DVec3;
 
@@ -47,45 +47,47 @@ impl<'a> CarriedPair<'a> {
     }
 
     /// An answer about the bodies that are seen, with places and directions of the world.
-    pub(super) fn in_world(&self, answer: TimeOfContact) -> TimeOfContact {
+    ///
+    /// # Errors
+    /// [`QueryError::BadMotion`]: what carries the bodies has no pose at the time of the answer.
+    pub(super) fn in_world(&self, answer: TimeOfContact) -> Result<TimeOfContact, QueryError> {
         match answer {
             TimeOfContact::Contact(contact) => {
                 let [normal, point_a, point_b] =
-                    self.carry(contact.time_lo, contact.normal, [contact.point_a, contact.point_b]);
-                TimeOfContact::Contact(Contact { normal, point_a, point_b, ..contact })
+                    self.carry(contact.time_lo, contact.normal, [contact.point_a, contact.point_b])?;
+                Ok(TimeOfContact::Contact(Contact { normal, point_a, point_b, ..contact }))
             }
-            other => other,
+            other => Ok(other),
         }
     }
 
     /// The same of a clearance.
-    pub(super) fn clearance_in_world(&self, found: Clearance) -> Clearance {
-        let [normal, point_a, point_b] = self.carry(found.time, found.normal, [found.point_a, found.point_b]);
-        Clearance { point_a, point_b, normal, ..found }
+    ///
+    /// # Errors
+    /// As [`CarriedPair::in_world`].
+    pub(super) fn clearance_in_world(&self, found: Clearance) -> Result<Clearance, QueryError> {
+        let [normal, point_a, point_b] =
+            self.carry(found.time, found.normal, [found.point_a, found.point_b])?;
+        Ok(Clearance { point_a, point_b, normal, ..found })
     }
 
-    fn carry(&self, time: f64, normal: DVec3, [a, b]: [DVec3; 2]) -> [DVec3; 3] {
-        let carried = |frame: Pose| {
-            [frame.transform_vector(normal), frame.transform_point(a), frame.transform_point(b)]
+    fn carry(&self, time: f64, normal: DVec3, [a, b]: [DVec3; 2]) -> Result<[DVec3; 3], QueryError> {
+        let frame = match &self.carrier {
+            Carrier::World => return Ok([normal, a, b]),
+            Carrier::Motion(motion) => frame_of(*motion, time),
+            Carrier::Joints { first, .. } => frame_of(first, time),
         };
-        match &self.carrier {
-            Carrier::World => [normal, a, b],
-            Carrier::Motion(motion) => carried(motion.pose_and_twist(time).0),
-            Carrier::Joints { first, .. } => carried(first.pose_and_twist(time).0),
-        }
+        // Both bodies have no pose then.
+        let frame = frame.ok_or(QueryError::BadMotion { body: 0 })?;
+        Ok([frame.transform_vector(normal), frame.transform_point(a), frame.transform_point(b)])
     }
 }
 
 impl<'a> Carrier<'a> {
     fn of([a, b]: [&'a dyn RigidMotion; 2], start: f64) -> Self {
         if is_shared(a, b) {
-            let Pose { translation, rotation, .. } = a.pose_and_twist(start).0;
             // A motion that has no pose is for the search to refuse.
-            return if translation.is_finite() && rotation.is_finite() {
-                Self::Motion(a)
-            } else {
-                Self::World
-            };
+            return frame_of(a, start).map_or(Self::World, |_| Self::Motion(a));
         }
         let (Some(a), Some(b)) = (a.chain(), b.chain()) else { return Self::World };
         let common = a.common_joints(b);
@@ -95,6 +97,14 @@ impl<'a> Carrier<'a> {
         let rest = [a.without_first(common), b.without_first(common)];
         Self::Joints { first: a.only_first(common), rest }
     }
+}
+
+/// The pose at a time, with the rotation of the quaternion divided by its length; `None`: there is none.
+fn frame_of(motion: &dyn RigidMotion, time: f64) -> Option<Pose> {
+    let Pose { rotation, translation, at } = motion.pose_and_twist(time).0;
+    let rotation = rotation.normalize();
+    let is_pose = rotation.is_finite() && translation.is_finite() && at.is_finite();
+    is_pose.then_some(Pose { rotation, translation, at })
 }
 
 /// Are these two one motion for certain, and one that is worth to be left out?

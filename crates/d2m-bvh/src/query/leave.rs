@@ -88,7 +88,7 @@ pub fn departure(
     let rounded = Rounded::try_new([&a, &b])?;
     let options = rounded.options([a.body, b.body], options)?;
     let Departure { start, left, answer } = of_departing(carried.seen(), window, &options)?.answer;
-    Ok(Departure { start, left, answer: rounded.answer(carried.in_world(answer)) })
+    Ok(Departure { start, left, answer: rounded.answer(carried.in_world(answer)?) })
 }
 
 /// The same of the meshes, without radii.

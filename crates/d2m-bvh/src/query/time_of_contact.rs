@@ -94,5 +94,5 @@ pub fn time_of_contact_counted(
             judged(&found, &[a, b], window, &options.with_budget(meter.rest()))?
         }
     };
-    Ok(Answered { answer: rounded.answer(carried.in_world(answer)), work })
+    Ok(Answered { answer: rounded.answer(carried.in_world(answer)?), work })
 }

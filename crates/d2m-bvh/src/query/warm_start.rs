@@ -80,7 +80,7 @@ pub fn time_of_contact_with(
             judged.answer
         }
     };
-    Ok(rounded.answer(carried.in_world(answer)))
+    Ok(rounded.answer(carried.in_world(answer)?))
 }
 
 /// The query of the meshes, without radii.

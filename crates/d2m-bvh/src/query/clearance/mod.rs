@@ -84,7 +84,7 @@ pub fn clearance(
     }
     let carried = CarriedPair::new(&CoveredPair::try_new([a, b], window)?);
     let found = Descent::try_new(carried.seen(), window, options)?.run()?;
-    Ok(carried.clearance_in_world(found))
+    carried.clearance_in_world(found)
 }
 
 /// [`clearance`] of many pairs of bodies, in order. On all threads of the current rayon pool with the feature `rayon`; each query runs
