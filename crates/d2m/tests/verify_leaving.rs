@@ -10,6 +10,7 @@ use d2m::{
     MeshTree, Mode, Moving, Pose, QueryOptions, RigidMotion, Span, SpanStatus, Start, StartState,
     TimeOfContact, Window, clearance, contact_spans, departure, time_of_contact,
 };
+use d2m_testing::Opaque;
 use glam::DVec3;
 
 const STEPS: u64 = 1 << 20;
@@ -256,5 +257,34 @@ fn a_clear_span_has_the_tolerance_of_the_query() {
         let mut lie = honest.clone();
         lie[0] = lie[0].with_tolerance(tolerance);
         assert!(!is_proven(&lie), "{lie:?}");
+    }
+}
+
+/// Far from the origin enclosures of poses raise the tolerance: bodies that part, and that meet, do so at that, and answers are proven.
+#[test]
+fn a_tolerance_that_rounding_of_poses_raises_is_one_that_an_answer_may_have() {
+    let tree = cube(1.0);
+    let verifier = Verifier::try_new(tree.mesh(), tree.mesh()).unwrap();
+    let far = |x: f64, speed: f64| Opaque(along_x(1e9 + x, speed));
+    let still = far(0.0, 0.0);
+    let options = QueryOptions::default();
+    for (from, speed) in [(1.5, 1.0), (1.75, 0.5), (3.0, -2.0), (2.5, -1.0)] {
+        let moved = far(from, speed);
+        let bodies = [Moving::new(&tree, &still), Moving::new(&tree, &moved)];
+        let [a, b] = bodies;
+        let found = time_of_contact(a, b, Window::UNIT, &options).unwrap();
+        assert!(found.contact().is_some_and(|contact| contact.tolerance > 1e-6), "{found:?}");
+        let verdict = verifier.time_of_contact(&bodies, Window::UNIT, &options, &found, STEPS);
+        assert!(matches!(verdict, Verdict::Verified { .. }), "{from}: {found:?} {verdict:?}");
+        let parting = departure(a, b, Window::UNIT, &options).unwrap();
+        assert!(parting.left.is_some(), "{parting:?}");
+        let verdict = verifier.departure(&bodies, Window::UNIT, &options, &parting, STEPS);
+        assert!(matches!(verdict, Verdict::Verified { .. }), "{from}: {parting:?} {verdict:?}");
+        let mut lie = found;
+        if let TimeOfContact::Contact(contact) = &mut lie {
+            contact.tolerance *= 4.0;
+        }
+        let verdict = verifier.time_of_contact(&bodies, Window::UNIT, &options, &lie, STEPS);
+        assert!(matches!(verdict, Verdict::Unproven { reason: Reason::Tolerance, .. }), "{verdict:?}");
     }
 }

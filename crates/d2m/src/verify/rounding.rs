@@ -13,12 +13,18 @@ const ERROR: f64 = 1.0 / 17_592_186_044_416.0;
 /// adds up √3 of the radius in each entry, the entries of a row times a point √3 of its length, and three components √3 of each. (3√3.)
 const BOXES: f64 = 5.196_152_422_706_632;
 
+/// What enclosures of motions leave open of both bodies' places at one time raises the engine's δ to 16 times that, where it is no more than
+/// [`PLACES`] (docs/theory/motions.md, "Wide enclosures"). It is that in the middle of a span, here that at a time of it, so a quarter more may be.
+const ROUNDED_PLACES: f64 = 16.0 * 1.25;
+/// What counts as rounding of them, as a part of the lengths that they are about.
+const PLACES: f64 = 512.0 * f64::EPSILON;
+
 /// How large the scene of a query is at a time of it, and how exactly anything can be known of it.
 pub(super) struct Scale {
     /// δ as it was asked for.
     pub(super) asked: f64,
-    /// The largest δ that is not a way to be right about anything: what was asked for, what the roundings of the scene's lengths may
-    /// need (2γ), and what the bodies move from one number for a time to the next.
+    /// The largest δ that is not a way to be right about anything: what was asked for, what the roundings of the scene's lengths (2γ) and
+    /// of the enclosures of both poses may need, and what the bodies move from one number for a time to the next.
     pub(super) most: f64,
     /// γ, and what the enclosures of both poses at that time say of it: how far a distance of two triangles may be off.
     pub(super) error: f64,
@@ -51,13 +57,18 @@ impl Scale {
             let state = body.motion.enclose_state_about(time, states[1][0].0.translation);
             state.position_radius + state.rotation_radius * near
         };
-        let error = ERROR * lengths + BOXES * (enclosed(&bodies[0]) + enclosed(&bodies[1]));
-        let far = states[1].iter().map(|(pose, _)| pose.translation.length()).fold(0.0, f64::max);
+        let places = enclosed(&bodies[0]) + enclosed(&bodies[1]);
+        let error = ERROR * lengths + BOXES * places;
+        let far = states[1].each_ref().map(|(pose, _)| pose.translation.length());
+        let rounded = places.min(PLACES * (far[0] + far[1] + reaches[0] + reaches[1]));
         Self {
             asked,
-            most: (asked * (1.0 + f64::EPSILON) + radii).max(2.0 * error).max(clock),
+            most: (asked * (1.0 + f64::EPSILON) + radii)
+                .max(2.0 * error)
+                .max(ROUNDED_PLACES * rounded)
+                .max(clock),
             error,
-            world_error: error + ERROR * far,
+            world_error: error + ERROR * far[0].max(far[1]),
         }
     }
 
