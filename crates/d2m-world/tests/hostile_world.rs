@@ -1,9 +1,11 @@
 //! Uses of a world that nobody means, and what must be answered.
 
-use d2m_bvh::{MeshTree, ProximityOptions, QueryOptions, StartState, TriMesh, Window};
+use d2m_bvh::{
+    ClearanceOptions, MeshTree, ProximityOptions, QueryOptions, Start, StartState, TriMesh, Window,
+};
 use d2m_motion::ConstantTwist;
 use d2m_testing::Surface;
-use d2m_world::{Body, BodyId, FirstContact, PlannedMotion, World};
+use d2m_world::{Body, BodyId, Candidate, FirstContact, PlannedMotion, Threads, World};
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
@@ -180,4 +182,46 @@ fn enormous_places_and_speeds_lose_no_pair() {
         let pairs = meeting(&mut world, Window::UNIT);
         assert!((0..4).all(|k| pairs.contains(&[2 * k, 2 * k + 1])), "{scale:e}: {pairs:?}");
     }
+}
+
+/// What is said of a body and itself is kept by none, before and after a query.
+#[test]
+fn a_body_and_itself_are_no_pair() {
+    let mut world = world_of([0.0, 5.0].map(|x| at(DVec3::X * x)));
+    let ids: Vec<BodyId> = world.ids().collect();
+    for round in 0..4 {
+        let id = ids[round % 2];
+        world.ignore_pair(id, id, true);
+        world.ignore_pair(id, id, round < 2);
+        world.ignore_pair(id, id, false);
+        world.set_min_separation(id, id, Some(1.0));
+        world.set_start(id, id, Some(Start::Leave));
+        assert_eq!(world.pair_options(id, id), *world.options());
+        assert!(meeting(&mut world, Window::UNIT).is_empty(), "{round}");
+        assert!(world.contact_spans(Window::UNIT, None).unwrap().is_empty());
+        let nearest = world.nearest_pair(Window::UNIT, &ClearanceOptions::default()).unwrap().unwrap();
+        assert!(nearest.a != nearest.b && nearest.clearance.lower > 3.9);
+        world.set_min_separation(id, id, None);
+        let itself = Candidate { a: id, b: id, from: 0.0, until: 1.0 };
+        let among = world.first_contact_among(&[], &[itself], Window::UNIT, Threads::Own);
+        assert_eq!(among.unwrap(), FirstContact::Separated);
+    }
+}
+
+/// A pair of a body that was removed is no proof that it is free, neither is that of the body in its place.
+#[test]
+fn candidates_that_were_removed_are_refused() {
+    let mut world = world_of([0.0, 0.5].map(|x| at(DVec3::X * x)));
+    let ids: Vec<BodyId> = world.ids().collect();
+    let pair = Candidate { a: ids[0], b: ids[1], from: f64::NAN, until: f64::NAN };
+    let ask = |world: &World, pair: Candidate| {
+        let among = || world.first_contact_among(&[], &[pair], Window::UNIT, Threads::Own).unwrap();
+        std::panic::catch_unwind(std::panic::AssertUnwindSafe(among))
+    };
+    assert!(matches!(ask(&world, pair), Ok(FirstContact::Contact { .. })));
+    let body = world.remove(ids[1]).unwrap();
+    assert!(ask(&world, pair).is_err());
+    let other = world.add(body);
+    assert!(other.index() == ids[1].index() && ask(&world, pair).is_err());
+    assert!(matches!(ask(&world, Candidate { b: other, ..pair }), Ok(FirstContact::Contact { .. })));
 }

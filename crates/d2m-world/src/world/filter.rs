@@ -20,13 +20,13 @@ fn ordered<T: Ord>(a: T, b: T) -> [T; 2] {
 
 impl PairFilter {
     /// Ignores a pair from now on.
-    pub(super) fn ignore(&mut self, a: u32, b: u32) {
-        self.pairs.insert(ordered(a, b));
+    pub(super) fn ignore(&mut self, pair: IndexPair) {
+        self.pairs.insert(pair);
     }
 
-    /// No longer ignores a pair by itself; the pair, if it was.
-    pub(super) fn restore(&mut self, a: u32, b: u32) -> Option<IndexPair> {
-        self.pairs.take(&ordered(a, b))
+    /// No longer ignores a pair by itself; was it ignored?
+    pub(super) fn restore(&mut self, pair: IndexPair) -> bool {
+        self.pairs.remove(&pair)
     }
 
     /// Ignores the pairs of two groups from now on.
@@ -50,10 +50,10 @@ impl PairFilter {
     }
 
     /// Sets the separation of a pair, or none of its own.
-    pub(super) fn set_separation(&mut self, a: u32, b: u32, separation: Option<f64>) {
+    pub(super) fn set_separation(&mut self, pair: IndexPair, separation: Option<f64>) {
         match separation {
-            Some(distance) => self.separations.insert(ordered(a, b), distance),
-            None => self.separations.remove(&ordered(a, b)),
+            Some(distance) => self.separations.insert(pair, distance),
+            None => self.separations.remove(&pair),
         };
     }
 
@@ -67,10 +67,10 @@ impl PairFilter {
     }
 
     /// Sets what counts of a pair that begins in contact, or nothing of its own.
-    pub(super) fn set_start(&mut self, a: u32, b: u32, start: Option<Start>) {
+    pub(super) fn set_start(&mut self, pair: IndexPair, start: Option<Start>) {
         match start {
-            Some(start) => self.starts.insert(ordered(a, b), start),
-            None => self.starts.remove(&ordered(a, b)),
+            Some(start) => self.starts.insert(pair, start),
+            None => self.starts.remove(&pair),
         };
     }
 

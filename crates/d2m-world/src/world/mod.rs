@@ -243,7 +243,14 @@ impl World {
         body
     }
 
-    /// Whether contacts of these two bodies are ignored (they are not, at first). Nothing happens if one of them was removed.
+    /// The places of two bodies, ascending; `None`: one of them was removed, or they are one body, which is no pair.
+    fn pair(&self, a: BodyId, b: BodyId) -> Option<IndexPair> {
+        let is_pair = a != b && self.slots.holds(a) && self.slots.holds(b);
+        is_pair.then(|| [a.index.min(b.index), a.index.max(b.index)])
+    }
+
+    /// Whether contacts of these two bodies are ignored (they are not, at first). Nothing happens if one of them was removed, or if they are
+    /// one body.
     ///
     /// ```
     /// # use d2m_bvh::MeshTree;
@@ -259,14 +266,12 @@ impl World {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn ignore_pair(&mut self, a: BodyId, b: BodyId, ignored: bool) {
-        if !(self.slots.holds(a) && self.slots.holds(b)) {
-            return;
-        }
+        let Some(pair) = self.pair(a, b) else { return };
         let filter = Arc::make_mut(&mut self.filter);
         if ignored {
-            filter.ignore(a.index, b.index);
-        } else {
-            self.changed_pairs.extend(filter.restore(a.index, b.index));
+            filter.ignore(pair);
+        } else if filter.restore(pair) {
+            self.changed_pairs.push(pair);
         }
     }
 
@@ -282,7 +287,7 @@ impl World {
 
     /// The separation at which these two bodies count as in contact, instead of that of the options; `None`: that of the
     /// options again. What is not finite or negative is refused by the next query. Nothing happens if one of the two was
-    /// removed.
+    /// removed, or if they are one body.
     ///
     /// ```
     /// # use d2m_bvh::MeshTree;
@@ -301,16 +306,14 @@ impl World {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn set_min_separation(&mut self, a: BodyId, b: BodyId, separation: Option<f64>) {
-        if !(self.slots.holds(a) && self.slots.holds(b)) {
-            return;
-        }
-        Arc::make_mut(&mut self.filter).set_separation(a.index, b.index, separation);
-        self.changed_pairs.push([a.index.min(b.index), a.index.max(b.index)]);
+        let Some(pair) = self.pair(a, b) else { return };
+        Arc::make_mut(&mut self.filter).set_separation(pair, separation);
+        self.changed_pairs.push(pair);
     }
 
     /// What counts of these two bodies if they are in contact at the start of a window, instead of what the options say; `None`: what the
     /// options say. With [`Start::Leave`] the answer of the pair is its first contact after the bodies have parted, with
-    /// [`Contact::left`](d2m_bvh::Contact::left). Nothing happens if one of the two was removed.
+    /// [`Contact::left`](d2m_bvh::Contact::left). Nothing happens if one of the two was removed, or if they are one body.
     ///
     /// ```
     /// # use d2m_bvh::MeshTree;
@@ -330,17 +333,15 @@ impl World {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn set_start(&mut self, a: BodyId, b: BodyId, start: Option<Start>) {
-        if !(self.slots.holds(a) && self.slots.holds(b)) {
-            return;
-        }
-        let pair = [a.index.min(b.index), a.index.max(b.index)];
-        Arc::make_mut(&mut self.filter).set_start(a.index, b.index, start);
+        let Some(pair) = self.pair(a, b) else { return };
+        Arc::make_mut(&mut self.filter).set_start(pair, start);
         // What was proven of the pair may be about the other question.
         self.states.remove(&pair);
         self.changed_pairs.push(pair);
     }
 
-    /// The options of a pair: those of the world, with the minimum separation and the start that the two have of their own.
+    /// The options of a pair: those of the world, with the minimum separation and the start that the two have of their own. Bodies that were
+    /// removed have nothing of their own.
     ///
     /// ```
     /// # use d2m_bvh::MeshTree;
@@ -356,7 +357,7 @@ impl World {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn pair_options(&self, a: BodyId, b: BodyId) -> QueryOptions {
-        let pair = [a.index.min(b.index), a.index.max(b.index)];
+        let Some(pair) = self.pair(a, b) else { return self.options };
         let separation = self.filter.separation(pair, self.options.min_separation);
         let start = self.filter.start(pair, self.options.start);
         self.options.with_min_separation(separation).with_start(start)

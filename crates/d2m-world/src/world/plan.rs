@@ -138,10 +138,11 @@ impl World {
         let (mut world, _) = self.planned(plan);
         let mut given: Vec<_> = candidates
             .iter()
-            .map(|&Candidate { a, b, from, until }| {
+            .filter_map(|&Candidate { a, b, from, until }| {
+                // What is not there panics.
+                let _ = [a, b].map(|id| world.body(id));
                 let (start, end) = (from.max(window.start()), until.min(window.end()));
-                let pair = [a.index.min(b.index), a.index.max(b.index)];
-                (pair, MeetingSpan { start, end, clear_after: window.end() })
+                Some((world.pair(a, b)?, MeetingSpan { start, end, clear_after: window.end() }))
             })
             .collect();
         given.sort_by_key(|(pair, _)| *pair);
