@@ -4,7 +4,8 @@ use d2m_bvh::{
     Budget, MeshTree, Moving, Posed, QueryOptions, Solid, StartState, TriMesh, Window, departure, distance,
     time_of_contact,
 };
-use d2m_motion::{ConstantTwist, Pose, RigidMotion};
+use d2m_interval::Interval;
+use d2m_motion::{CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
 use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
 use std::collections::BTreeSet;
@@ -222,4 +223,64 @@ fn rounded_bodies_overlap_where_their_radii_meet() {
         overlapping += u32::from(expected == StartState::Overlapping);
     }
     assert!(touching > 20 && overlapping > 20, "{touching} {overlapping}");
+}
+
+/// At rest, as it says, and within `off` of there and `turned` of its rotation as far as it knows itself at one time.
+struct Blind {
+    motion: ConstantTwist,
+    off: f64,
+    turned: f64,
+}
+
+impl RigidMotion for Blind {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        self.motion.pose_and_twist(t)
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        self.motion.enclose_pose(t)
+    }
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        self.motion.enclose_twist(t)
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.motion.enclose_twist_rate(t)
+    }
+    fn enclose_state_about(&self, t: f64, origin: DVec3) -> CertifiedState {
+        let state = self.motion.enclose_state_about(t, origin);
+        CertifiedState { position_radius: self.off, rotation_radius: self.turned, ..state }
+    }
+    fn constant_twist(&self) -> Option<ConstantTwist> {
+        Some(self.motion)
+    }
+}
+
+/// A pose that is not as it was given, and of which a motion knows nothing at that time: neither that bodies touch nor that they overlap.
+#[test]
+fn how_what_knows_nothing_of_itself_begins_is_undecided() {
+    let cube =
+        MeshTree::new(Surface::cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)).into_mesh(TriMesh::try_new));
+    let held =
+        MeshTree::new(Surface::cuboid(DVec3::splat(-0.125), DVec3::splat(0.125)).into_mesh(TriMesh::try_new));
+    let at_rest = ConstantTwist::REST;
+    for (other, place, known) in [
+        (&cube, DVec3::X, StartState::Touching),
+        (&cube, DVec3::splat(0.5), StartState::Overlapping),
+        (&held, DVec3::X * 0.5, StartState::Overlapping),
+    ] {
+        let motion = at_rest.with_position(place).with_reference_time(0.5);
+        let start = |off: f64, turned: f64| {
+            let blind = Blind { motion, off, turned };
+            let [a, b] = [Moving::new(&cube, &at_rest), Moving::new(other, &blind)];
+            let [found, exchanged] = [(a, b), (b, a)].map(|(a, b)| {
+                let found = time_of_contact(a, b, Window::UNIT, &QueryOptions::default()).unwrap();
+                found.contact().expect("they share points").start
+            });
+            assert_eq!(found, exchanged, "{place}, {off}, {turned}");
+            found
+        };
+        assert_eq!(start(0.0, 0.0), known, "{place}");
+        for unknown in [f64::INFINITY, f64::NAN] {
+            assert_eq!([start(unknown, 0.0), start(0.0, unknown)], [StartState::Undecided; 2], "{place}");
+        }
+    }
 }

@@ -119,14 +119,11 @@ pub(super) fn meeting_at<'a>(
         }
     }
     let posed = [0, 1].map(|k| Posed::new(bodies[k].body, poses[k]));
-    // Of a motion that knows nothing of itself at one time nothing is proven.
-    if !f64::is_finite(blur) {
-        return Ok(Some(Meeting::Undecided));
-    }
     Meeters { bodies: posed, solids, blur, patience: PATIENCE }.meeting(meter)
 }
 
-/// How far a point of a body may be from where the pose, which is rounded, places it.
+/// How far a point of a body may be from where the pose, which is rounded, places it; of a motion that knows nothing of itself at that time
+/// infinite, or no number.
 pub(super) fn deviation(body: &Moving<'_>, pose: &Pose, time: f64, origin: DVec3) -> f64 {
     let state = body.motion.enclose_state_about(time, origin);
     let turn = DMat3::from_quat(pose.rotation.normalize());

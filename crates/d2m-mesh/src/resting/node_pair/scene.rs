@@ -136,6 +136,8 @@ impl<'a> RestingScene<'a> {
     pub(crate) fn try_blurred(a: Posed<'a>, b: Posed<'a>, blur: f64) -> Result<Self, QueryError> {
         let scene = Self::try_new(a, b)?;
         let more = blur / scene.unit;
+        // What is no number may be any.
+        let more = if more.is_nan() { f64::INFINITY } else { more };
         Ok(if more > 0.0 { scene.reaching(more) } else { scene })
     }
 

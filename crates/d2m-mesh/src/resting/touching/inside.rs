@@ -85,6 +85,7 @@ pub fn middle_of_boxes(bodies: &[Posed<'_>; 2]) -> Option<DVec3> {
 /// let point = MeshTree::new(TriMesh::point(DVec3::splat(0.125))?);
 /// let held = |blur| holds(Posed::at_rest(&solid), Posed::at_rest(&point), blur, &mut Meter::unlimited());
 /// assert_eq!((held(0.0), held(0.25)), (Ok(true), Ok(false))); // 0.125 from three faces
+/// assert_eq!([held(f64::INFINITY), held(f64::NAN)], [Ok(false); 2]); // anywhere
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///

@@ -190,7 +190,7 @@ impl<'a> Meeters<'a> {
     fn meeting_in_order(&self, meter: &mut Meter) -> Result<Option<Meeting<'a>>, QueryError> {
         let [a, b] = self.bodies;
         let scene = RestingScene::try_blurred(a, b, self.blur)?;
-        // In units so small that underflow takes a part of all lengths nothing is proven.
+        // In units so small that underflow takes a part of all lengths nothing is proven, nor of vertices that may be anywhere.
         if scene.need.is_nan() || scene.need > MOST_ROUNDING {
             return Ok(Some(Meeting::Undecided));
         }
