@@ -5,8 +5,8 @@ use crate::rates::lowest;
 use crate::{Body, Claim, Mesh, Query, Reason, Solid, TimeSpan, Verdict, verify};
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{
-    CertifiedState, Chain, ConstantTwist, IntervalPose, IntervalTwist, Joint, JointKind, JointValue,
-    Keyframes, Kinematics, Pose, RigidMotion, Span, Twist,
+    CertifiedState, Chain, Composed, ConstantTwist, IntervalPose, IntervalTwist, Joint, JointKind,
+    JointValue, Keyframes, Kinematics, Pose, RigidMotion, Span, Twist,
 };
 use d2m_testing::{Draw, KnuthRandom};
 use glam::{DQuat, DVec3};
@@ -489,5 +489,67 @@ fn what_overlaps_without_crossing_triangles_is_proven_to_last() {
     // Nothing lasts after they have parted, nor before they have met.
     for (from, to) in [(0.33, 0.66), (0.34, 0.67), (0.0, 1.0)] {
         assert!(!is_verified(verify(&query(1.0), &often(from, to), STEPS)), "{from} {to}");
+    }
+}
+
+/// At the address of the twist that it holds, and half a length further along x.
+#[repr(transparent)]
+struct Beside(ConstantTwist);
+
+impl Beside {
+    fn twist(&self) -> ConstantTwist {
+        self.0.with_position(self.0.position() + DVec3::X * 0.5)
+    }
+}
+
+impl RigidMotion for Beside {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        self.twist().pose_and_twist(t)
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        self.twist().enclose_pose(t)
+    }
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        self.twist().enclose_twist(t)
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.twist().enclose_twist_rate(t)
+    }
+}
+
+/// Boxes a thousandth apart that one fast motion carries, by one object and by equal numbers: what is true of them is proven in a few steps at the
+/// end of a long time, what is false is refuted, and times of the motion still count.
+#[test]
+fn what_one_motion_carries_keeps_its_distance() {
+    let pose = |x: f64, angle: f64| Pose::from_axis_angle(DVec3::X * x, DVec3::new(1.0, 2.0, -1.0), angle);
+    let keys = [(0.0, pose(1e6, 0.0)), (1.0, pose(-2e6, 2.0)), (2.0, pose(3e6, -1.0))];
+    let path = Keyframes::try_new(&keys, Span::Linear).unwrap();
+    let spin = ConstantTwist::REST.with_position(DVec3::X * 1e6).with_angular_velocity(DVec3::splat(300.0));
+    let [first, second] = [cube(), cuboid(DVec3::new(0.501, -0.5, -0.5), DVec3::new(1.501, 0.5, 0.5))];
+    let ask = |[a, b]: [&dyn RigidMotion; 2], from: f64, to: f64, claim: &dyn Fn(TimeSpan) -> Claim| {
+        let window = between(from, to);
+        let query = Query { bodies: [body(&first, a), body(&second, b)], window };
+        verify(&query, &claim(window), 100)
+    };
+    let clear = |distance: f64| move |span: TimeSpan| Claim::Clear { span, distance };
+    let other = spin;
+    for motions in [[&path as &dyn RigidMotion, &path], [&spin, &other]] {
+        assert!(is_verified(ask(motions, 0.0, 2.0, &clear(0.000_999_999))));
+        assert!(matches!(ask(motions, 0.0, 2.0, &clear(0.001_000_001)), Verdict::Refuted { .. }));
+        let often = |span: TimeSpan| Claim::Often { span, distance: 0.001_000_001, every: 1e-6 };
+        assert!(is_verified(ask(motions, 0.0, 2.0, &often)));
+    }
+    assert_eq!(reason(ask([&path, &path], 1.0, 3.0, &clear(0.0))), Some(Reason::OutsideMotion));
+    // Nearly the same.
+    let slower = spin.with_angular_velocity(DVec3::splat(299.0));
+    let (hidden, elsewhere) =
+        (Composed::new(ConstantTwist::REST, &path), spin.with_position(DVec3::X * 1e6 + 0.5));
+    let (beside, still) = (Beside(ConstantTwist::REST), ConstantTwist::REST);
+    assert!(
+        !is_verified(ask([&beside, &beside.0], 0.0, 2.0, &clear(0.0)))
+            && is_verified(ask([&still, &beside.0], 0.0, 2.0, &clear(0.0)))
+    );
+    for motions in [[&spin as &dyn RigidMotion, &slower], [&spin, &elsewhere], [&path, &hidden]] {
+        assert!(!is_verified(ask(motions, 0.0, 2.0, &clear(0.0))));
     }
 }

@@ -4,7 +4,7 @@ use crate::prove::{Obstacle, Proof, surfaces_clear};
 use crate::solid::{clear, overlap};
 use crate::{Body, Claim, Query, Reason, TimeSpan, Verdict};
 use d2m_interval::Interval;
-use d2m_motion::{Composed, ConstantTwist};
+use d2m_motion::{Composed, ConstantTwist, RigidMotion};
 use glam::DVec3;
 
 /// Proves a claim, or refutes it, or says why it did neither, in at most so many steps (a microsecond each).
@@ -30,13 +30,16 @@ use glam::DVec3;
 /// # Ok::<(), d2m_verify::MeshFault>(())
 /// ```
 pub fn verify(query: &Query<'_>, claim: &Claim, most_steps: u64) -> Verdict {
-    // Two links of one arm, seen from the last joint that they share: no distance changes, but directions do.
+    // Two links of one arm are seen from the last joint that they share, bodies of one motion from that: no distance changes, but directions do.
     let links = match query.bodies.map(|body| body.motion.chain()) {
         [Some(a), Some(b)] => [a, b].map(|link| link.without_first(a.common_joints(b))).to_vec(),
         _ => Vec::new(),
     };
     let mut bodies = query.bodies;
     bodies.iter_mut().zip(&links).for_each(|(body, link)| body.motion = link);
+    if is_one_motion(query.bodies.map(|body| body.motion)) {
+        bodies.iter_mut().for_each(|body| body.motion = &ConstantTwist::REST);
+    }
     let mut case = Case { query, bodies, left: most_steps };
     match case.judge(claim) {
         Ok(()) => Verdict::Verified { steps: most_steps - case.left },
@@ -48,6 +51,13 @@ pub fn verify(query: &Query<'_>, claim: &Claim, most_steps: u64) -> Verdict {
         },
         Err(Obstacle::Open { clear_until, reason, pair }) => Verdict::Unproven { clear_until, reason, pair },
     }
+}
+
+/// Do these two move as one for certain? Then no distance changes, whatever the motion.
+fn is_one_motion([a, b]: [&dyn RigidMotion; 2]) -> bool {
+    // By address and type: a part of a motion may have the address of the whole.
+    core::ptr::eq::<dyn RigidMotion>(a, b)
+        || a.constant_twist().is_some_and(|a| b.constant_twist() == Some(a))
 }
 
 /// How much longer a meeting is taken to last at first than the one before did at last.
@@ -103,7 +113,7 @@ impl Case<'_> {
             return self.open(Reason::Malformed, None);
         }
         let is_defined = |body: &Body<'_>| [from, to].iter().all(|&time| body.motion.domain().contains(time));
-        if !self.bodies.iter().all(is_defined) {
+        if !self.query.bodies.iter().all(is_defined) {
             return self.open(Reason::OutsideMotion, None);
         }
         Ok(self.radii() + distance)
