@@ -261,10 +261,10 @@ impl<'py> Motions<'py> {
             });
         }
         if is_several(given)? {
-            let motions = given
-                .try_iter()?
-                .enumerate()
-                .map(|(index, any)| motion_argument(Some(&any?), &format!("{name}[{index}]")));
+            let motions = given.try_iter()?.enumerate().map(|(index, any)| {
+                let any = any?;
+                motion_argument((!any.is_none()).then_some(&any), &format!("{name}[{index}]"))
+            });
             return Ok(Self::Each(motions.collect::<PyResult<_>>()?));
         }
         if given.cast::<crate::motion::Motion>().is_err() && !given.is_instance_of::<pyo3::types::PyDict>() {
@@ -326,7 +326,8 @@ fn is_several(any: &Bound<'_, PyAny>) -> PyResult<bool> {
     if !(any.is_instance_of::<pyo3::types::PyList>() || any.is_instance_of::<PyTuple>()) {
         return Ok(false);
     }
-    let Ok(first) = any.get_item(0) else { return Ok(false) };
+    // No motions are no row of numbers either.
+    let Ok(first) = any.get_item(0) else { return Ok(true) };
     Ok(first.is_none()
         || first.is_instance_of::<pyo3::types::PyDict>()
         || first.cast::<crate::motion::Motion>().is_ok())

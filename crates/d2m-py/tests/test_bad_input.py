@@ -295,6 +295,11 @@ def test_worlds(box: d2m_ccd.Tree) -> None:
     assert caught.value.index == (0, 1)
     card = world.add(d2m_ccd.Tree(CORNERS, FACES[:1]), {"x": [50, 0, 0]})
     assert world.bodies()[-1] == card
+    # A body and itself are no pair.
+    world.ignore_pair(card, card)
+    world.ignore_pair(card, card, False)
+    world.set_min_separation(card, card, 1.0)
+    assert [(pair.a, pair.b) for pair in world.contacts()] == [tuple(world.bodies()[:2])]
 
 
 def test_simulations(box: d2m_ccd.Tree) -> None:

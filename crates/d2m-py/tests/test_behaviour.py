@@ -76,6 +76,17 @@ def test_arrays_of_any_layout(knots: tuple[d2m_ccd.Tree, d2m_ccd.Tree]) -> None:
     assert_same_bits(d2m_ccd.batch(*knots, single.astype(float), rows_b), d2m_ccd.batch(*knots, single, rows_b))
 
 
+def test_sequences_of_motions_hold_none_and_may_be_empty(box: d2m_ccd.Tree) -> None:
+    away = {"x": [3, 0, 0]}
+    expected = d2m_ccd.batch(box, box, [d2m_ccd.ConstantTwist(), away, d2m_ccd.ConstantTwist()])
+    assert len(set(expected["status"].tolist())) == 2
+    assert_same_bits(expected, d2m_ccd.batch(box, box, [None, away, None]))
+    assert_same_bits(expected[:2], d2m_ccd.batch(box, box, ({}, away), (None, None)))
+    for empty in ([], (), np.zeros((0, 13))):
+        none = d2m_ccd.batch(box, box, empty)
+        assert len(none) == 0 and none.dtype == d2m_ccd.RESULT
+
+
 def test_windows_of_trials(box: d2m_ccd.Tree) -> None:
     falling = d2m_ccd.ConstantTwist(x=[0, 0, 5], v=[0, 0, -1])
     windows = np.array([[0, 3], [0, 4.5], [4, 8], [5, 6], [10, 20]], float)
