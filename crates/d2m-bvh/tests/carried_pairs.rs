@@ -194,9 +194,9 @@ fn places_that_nothing_is_known_of_are_refused() {
         assert!(time_of_contact(a, b, early, &options).unwrap().is_separated());
         if !is_known {
             for answer in [found, cached, leaving, parting] {
-                assert_eq!(answer, Err(bad.clone()));
+                assert_eq!(answer, Err(bad));
             }
-            assert_eq!(nearest, Err(bad.clone()));
+            assert_eq!(nearest, Err(bad));
             continue;
         }
         let contact = *found.unwrap().contact().expect("they meet");

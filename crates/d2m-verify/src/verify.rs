@@ -38,7 +38,7 @@ pub fn verify(query: &Query<'_>, claim: &Claim, most_steps: u64) -> Verdict {
     let mut bodies = query.bodies;
     bodies.iter_mut().zip(&links).for_each(|(body, link)| body.motion = link);
     if is_one_motion(query.bodies.map(|body| body.motion)) {
-        bodies.iter_mut().for_each(|body| body.motion = &ConstantTwist::REST);
+        bodies = bodies.map(|body| Body { motion: &ConstantTwist::REST, ..body });
     }
     let mut case = Case { query, bodies, left: most_steps };
     match case.judge(claim) {
