@@ -2,7 +2,8 @@
 
 use crate::fault::{Fault, Value};
 use numpy::{
-    Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods,
+    Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
+    PyUntypedArrayMethods,
 };
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
@@ -40,7 +41,9 @@ impl<'py> Doubles<'py> {
     /// What is such an array already, without a call of Python: a query of a few numbers takes less than one.
     fn ready(any: &Bound<'py, PyAny>) -> Option<Self> {
         let array = any.cast::<PyArrayDyn<f64>>().ok()?;
-        if !(array.is_c_contiguous() && array.data().is_aligned()) {
+        // What is more than an array, as one with a mask, is looked at.
+        let is_plain = any.get_type().is(any.py().get_type::<PyUntypedArray>());
+        if !(is_plain && array.is_c_contiguous() && array.data().is_aligned()) {
             return None;
         }
         Some(Self { array: array.try_readonly().ok()? })
@@ -114,6 +117,13 @@ fn as_array<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyA
     let py = any.py();
     if any.is_none() {
         return Err(PyTypeError::new_err(format!("{name} is None: an array of numbers is expected")));
+    }
+    // Numbers behind a mask are none.
+    if any.hasattr(intern!(py, "mask"))? {
+        let masked = numpy(py)?.getattr(intern!(py, "ma"))?.call_method1(intern!(py, "is_masked"), (any,))?;
+        if masked.is_truthy()? {
+            return Err(Fault::new(format!("{name} has masked elements, numbers are expected")).into());
+        }
     }
     let array = numpy(py)?.call_method1(intern!(py, "asarray"), (any,));
     array.map_err(|error| Fault::new(format!("{name} is not an array: {}", error.value(py))).into())

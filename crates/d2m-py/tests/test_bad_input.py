@@ -248,6 +248,22 @@ def test_batches_name_the_first_bad_trial(box: d2m_ccd.Tree) -> None:
     expect(lambda: d2m_ccd.batch(box, box, None, None, window=windows), 77, (1.0, 0.0), "trial 77")
 
 
+def test_masked_numbers_are_none(box: d2m_ccd.Tree) -> None:
+    corners, faces = np.array(CORNERS, float), np.array(FACES)
+    whole = d2m_ccd.Mesh(np.ma.array(corners), np.ma.array(faces))
+    assert whole.vertices.tolist() == corners.tolist() and whole.faces.tolist() == faces.tolist()
+    for vertices, triangles in (
+        (np.ma.masked_equal(corners, corners.max()), faces),
+        (np.ma.masked_equal(corners, corners.max())[::-1], faces),
+        (corners, np.ma.masked_equal(faces, 1)),
+    ):
+        with pytest.raises(InputError, match="masked"):
+            d2m_ccd.Mesh(vertices, triangles)
+    rows = np.ma.array(np.eye(13)[:1], mask=np.eye(13)[1:2])
+    with pytest.raises(InputError, match="motions_a has masked"):
+        d2m_ccd.batch(box, box, rows)
+
+
 def test_batches_of_other_shapes(box: d2m_ccd.Tree) -> None:
     for bad in (np.zeros((5, 12)), np.zeros((5, 13, 1)), np.zeros(12)):
         with pytest.raises(InputError, match="shape"):
