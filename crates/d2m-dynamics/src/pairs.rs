@@ -9,7 +9,6 @@ use crate::measured::Measured;
 use crate::momenta::Momenta;
 use crate::nested::{apart_along_axis_until, bound_from_centers};
 use crate::rigid_body::RigidBody;
-use crate::start::size;
 #[cfg(feature = "audit")]
 use d2m_bvh::audit::Place;
 use d2m_bvh::{
@@ -163,6 +162,11 @@ pub(crate) enum Outcome {
     ClearUntil(f64),
     /// Closer than can be certified.
     Stuck,
+}
+
+/// The radius of the larger body, or how far from the origin they are.
+pub(crate) fn size(bodies: [&RigidBody; 2]) -> f64 {
+    bodies.iter().map(|body| body.radius.max(body.position.length())).fold(0.0, f64::max)
 }
 
 pub(crate) fn solid_of(a: &RigidBody, b: &RigidBody) -> Solid {

@@ -4,7 +4,7 @@ use crate::clearance::are_spheres_apart;
 use crate::contact::{Accuracy, Company, ContactPoint, SolverBody, Start, System};
 use crate::measured::measure;
 use crate::neighbors::posed;
-use crate::pairs::{Pair, distance_of, held_at};
+use crate::pairs::{Pair, distance_of, held_at, size};
 use crate::rigid_body::RigidBody;
 use crate::velocity::Velocity;
 use crate::{Simulation, SimulationError, StepError};
@@ -296,11 +296,6 @@ impl Simulation {
             }
         }
     }
-}
-
-/// The radius of the larger body, or how far from the origin they are.
-pub(crate) fn size(bodies: [&RigidBody; 2]) -> f64 {
-    bodies.iter().map(|body| body.radius.max(body.position.length())).fold(0.0, f64::max)
 }
 
 /// Directions in which the second body may come free of the first one: from center to center, the axes, and halfway between them.
