@@ -77,7 +77,10 @@ fn chains_that_hang_straight_stay_so() {
         for (k, mass) in masses.enumerate() {
             let top = DVec3::NEG_Y * (0.2 * f64::from(k as u32));
             let body = Body::new("", Arc::clone(&bar)).with_mass(Mass::Total(mass));
-            let id = simulation.add(&body.with_position(top - DVec3::Y * 0.1)).unwrap();
+            // As much as rounding might.
+            let moved = if k == 3 { DVec3::X * 1e-12 } else { DVec3::ZERO };
+            let body = body.with_position(top - DVec3::Y * 0.1).with_linear_velocity(moved);
+            let id = simulation.add(&body).unwrap();
             let pin = Joint::new(JointKind::Revolute, id, last, top).with_axis(DVec3::Z);
             simulation.add_joint(&pin).unwrap();
             last = Some(id);
@@ -90,7 +93,7 @@ fn chains_that_hang_straight_stay_so() {
         assert!(f64::from(flights as u32) <= 1.1 / step, "{flights}");
         for id in ids {
             let (v, w) = (simulation.linear_velocity(id), simulation.angular_velocity(id));
-            assert!(v.length() < 1e-6 && w.length() < 1e-6, "{load:?}: {v} {w}");
+            assert!(v.length() < 1e-5 && w.length() < 1e-4, "{load:?}: {v} {w}");
         }
     }
 }

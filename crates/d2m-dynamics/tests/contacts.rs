@@ -220,18 +220,20 @@ fn boxes_that_touch_part_to_the_gap() {
     }
 }
 
-/// Also where the gap is wide: what they are parted by first is a part of their size, and not of the gap.
+/// Also where the gap is wide: what they are parted by first is a part of their size, and not of the gap. A box on a fifth as large a one, turned against it.
 #[test]
 fn boxes_that_touch_part_to_a_wide_gap() {
-    for gap in [0.01, 0.03] {
+    let gap = 0.01;
+    for lifted in [gap, 0.5 * gap, 0.0] {
         let mut simulation = Simulation::new(SimulationOptions::default().with_gap(gap)).unwrap();
         simulation.add(&floor()).unwrap();
-        let shape = cube();
-        let below = simulation.add(&body(0, &shape, 0.5 + gap)).unwrap();
-        let above = simulation.add(&body(1, &shape, 1.5 + gap)).unwrap();
-        assert_eq!(run(&mut simulation, 1.0).skipped, 0.0, "{gap}");
+        let small = tree("box?x=0.1&y=0.1&z=0.1");
+        let below = simulation.add(&body(0, &small, 0.1 + lifted)).unwrap();
+        let turned = body(1, &cube(), 0.7 + lifted).with_orientation(DQuat::from_rotation_y(0.4));
+        let above = simulation.add(&turned).unwrap();
+        assert_eq!(run(&mut simulation, 1.0).skipped, 0.0, "{lifted}");
         let y = simulation.position(above).y - simulation.position(below).y;
-        assert!((y - 1.0 - gap).abs() < 0.2 * gap, "{gap}: {y}");
+        assert!((y - 0.6 - gap).abs() < 0.2 * gap, "{lifted}: {y}");
     }
 }
 
