@@ -39,7 +39,7 @@ pub struct StepReport {
     /// The segments that are complete now. The last segment of a step is complete after the next one (its impulses are
     /// those of that step's velocity solve); [`Simulation::finish`] gives it.
     pub segments: Vec<Segment>,
-    /// Contact events in this step.
+    /// Contact events in this step: those that [`SimulationOptions::max_events`](crate::SimulationOptions::max_events) limits, and impacts.
     pub events: u32,
     /// Pairs of bodies that were queried for a time of contact.
     pub queries: u64,

@@ -64,8 +64,8 @@ fn a_bridge_without_slack_holds() {
     assert!((-0.02..0.03).contains(&height), "{height}");
 }
 
-/// Chains that hang straight stay so: of like bars, the upper ones of which swing faster than steps follow, and under a load ten thousand times as heavy. Rounding
-/// made them swing, in flights of hundredths of a step.
+/// A chain that hangs straight at rest stays at rest: one of equal bars in long steps, and one under a load of ten thousand times the mass of a bar. In both
+/// bars oscillate at a higher rate than steps resolve, and an error of rounding grew until the whole chain swung.
 #[test]
 fn chains_that_hang_straight_stay_so() {
     for (bars, step, load) in [(60, 1.0 / 30.0, None), (30, 0.01, Some(1e4))] {

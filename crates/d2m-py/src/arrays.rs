@@ -41,7 +41,7 @@ impl<'py> Doubles<'py> {
     /// What is such an array already, without a call of Python: a query of a few numbers takes less than one.
     fn ready(any: &Bound<'py, PyAny>) -> Option<Self> {
         let array = any.cast::<PyArrayDyn<f64>>().ok()?;
-        // What is more than an array, as one with a mask, is looked at.
+        // Subclasses, as arrays with a mask, go through `as_array`, which refuses masked elements.
         let is_plain = any.get_type().is(any.py().get_type::<PyUntypedArray>());
         if !(is_plain && array.is_c_contiguous() && array.data().is_aligned()) {
             return None;
