@@ -8,9 +8,9 @@ use crate::contact::{
 use crate::ends::Ends;
 use crate::joint_rows::Joined;
 use crate::momenta::Momenta;
-use crate::pull::{couples, pulls, work};
+use crate::pull::{couples, pulls};
 use crate::rigid_body::RigidBody;
-use crate::solved_body::{body_at, moves, still, world_inertia};
+use crate::solved_body::{body_at, moves, still};
 use crate::taut::of_closed_chains;
 use crate::turning::Pull;
 use crate::velocity::Velocity;
@@ -38,8 +38,6 @@ const JOINT_CORRECTIONS: u32 = 8;
 const FAR_OFF: f64 = 8.0;
 /// Solutions, of these, whose impulses may brake what oscillates fast: the first one has no brakes, and what it has is rarely the force.
 const PULLS: u32 = 2;
-/// The part of twice the kinetic energy that the brakes of a flight may add: in a hundred flights not more than a hundredth.
-const WORK: f64 = 1.0 / 16384.0;
 /// Ratio of masses up to which jointed bodies are alike.
 pub(crate) const LIKE: f64 = 4.0;
 /// The part of the gap at which it does so no longer, and hardly any is left.
@@ -182,27 +180,10 @@ impl Problem<'_> {
         self.members.binary_search(&body).unwrap_or_default()
     }
 
-    /// With brakes on what oscillates fast, unless these do work that counts.
+    /// With brakes on what oscillates fast.
     pub(crate) fn attempt(&self, now: f64, end: f64, room: Room) -> Attempt {
-        if self.may_be_braked() {
-            let braked = self.attempt_with(now, end, room, Brakes::OfOscillations);
-            if self.is_quietly_braked(&braked) {
-                return braked;
-            }
-        }
-        self.attempt_with(now, end, room, Brakes::None)
-    }
-
-    /// Do the brakes add no energy that counts, against what bodies have, or would have after a fall of one step? What forces have pulled taut for longer
-    /// than a flight turns little, and gives back what the brakes took; where something snaps taut they could add any.
-    fn is_quietly_braked(&self, attempt: &Attempt) -> bool {
-        let work = work(&attempt.system, &attempt.found.pulled);
-        let inertia: Vec<(f64, DMat3)> = self.states.iter().map(|s| world_inertia(s)).collect();
-        let fall = |s: &Cow<'_, RigidBody>| {
-            (s.force_with(self.options.gravity) * self.options.step).length_squared() * s.inverse_mass
-        };
-        let fallen: f64 = self.states.iter().filter(|s| moves(s)).map(fall).sum();
-        work <= WORK * attempt.system.doubled_energy(&inertia).max(fallen)
+        let brakes = if self.may_be_braked() { Brakes::OfOscillations } else { Brakes::None };
+        self.attempt_with(now, end, room, brakes)
     }
 
     fn attempt_with(&self, now: f64, end: f64, room: Room, brakes: Brakes) -> Attempt {

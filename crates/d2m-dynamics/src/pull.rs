@@ -12,7 +12,7 @@
 //! h² K/(I + G) that would have to be above 4, which is some 1/2 at most. What keeps its spin is not braked, so that oscillations keep their energy;
 //! the error is one of the second order in h, as that of steps is in any case.
 
-use crate::contact::{ContactPoint, SolverBody, System};
+use crate::contact::{ContactPoint, System};
 use crate::rigid_body::RigidBody;
 use crate::turning::Pull;
 use core::ops::Range;
@@ -90,14 +90,4 @@ pub(crate) fn couples(
         let change = system.bodies[k].velocity.angular - pull.free;
         ContactPoint::couple(members[k], -(pull.stiffness * change))
     })
-}
-
-/// The work that the couples do.
-pub(crate) fn work(system: &System, pulls: &[Option<Pull>]) -> f64 {
-    let of = |(pull, body): (&Option<Pull>, &SolverBody)| {
-        let Some(pull) = pull else { return 0.0 };
-        let (change, sum) = (body.velocity.angular - pull.free, body.velocity.angular + pull.free);
-        -0.5 * (pull.stiffness * change).dot(sum)
-    };
-    pulls.iter().zip(&system.bodies).map(of).sum()
 }
