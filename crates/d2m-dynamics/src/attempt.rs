@@ -36,8 +36,6 @@ const JOINT_CORRECTIONS: u32 = 8;
 /// How many times further off than what is not corrected at all corrections are given up, which saves time where they diverge. Under brakes they may come
 /// back from there.
 const FAR_OFF: f64 = 8.0;
-/// Solutions, of these, whose impulses may brake what oscillates fast: the first one has no brakes, and what it has is rarely the force.
-const PULLS: u32 = 2;
 /// Ratio of masses up to which jointed bodies are alike.
 pub(crate) const LIKE: f64 = 4.0;
 /// The part of the gap at which it does so no longer, and hardly any is left.
@@ -48,7 +46,7 @@ const LASTING: f64 = 1.0 / 16.0;
 const RESTORED: f64 = 1.0 / 16.0;
 /// Is the turning of jointed bodies braked, where it is faster than flights?
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Brakes {
+pub(crate) enum Brakes {
     None,
     OfOscillations,
 }
@@ -186,7 +184,7 @@ impl Problem<'_> {
         self.attempt_with(now, end, room, brakes)
     }
 
-    fn attempt_with(&self, now: f64, end: f64, room: Room, brakes: Brakes) -> Attempt {
+    pub(crate) fn attempt_with(&self, now: f64, end: f64, room: Room, brakes: Brakes) -> Attempt {
         let (states, options) = (self.states, self.options);
         let place = |body: usize| self.place(body);
         let span =
@@ -239,7 +237,7 @@ impl Problem<'_> {
             system.store(&mut found.contacts);
             let tolerance = system.tolerance(accuracy);
             let solved = (correction == 0).then(|| (system.bodies.clone(), system.present()));
-            if brakes == Brakes::OfOscillations && correction < PULLS {
+            if brakes == Brakes::OfOscillations {
                 found.pulled = pulls(&found.pulled, states, &spins, &found.contacts, span.remaining, place);
             }
             let off = put_right(system, states, &found.contacts, span, place, &found.pulled);

@@ -1,6 +1,6 @@
 //! How long the flights of an island are: until when velocities can be solved for, and what gives way where there are none.
 
-use crate::attempt::{Attempt, LIKE, Problem};
+use crate::attempt::{Attempt, Brakes, LIKE, Problem};
 use crate::contact::{Company, ContactPoint, LEFT_OVER, NEAR, Room};
 use crate::flight::Splits;
 use crate::gained::{Gained, is_of_joints_alone};
@@ -8,7 +8,7 @@ use crate::joint_rows::Ahead;
 use crate::pull::pulls;
 use crate::rigid_body::RigidBody;
 use crate::solved_body::moves;
-use crate::taut::locked;
+use crate::taut::{locked, of_closed_chains, of_open_chains};
 use crate::velocity::Velocity;
 use glam::DVec3;
 use std::borrow::Cow;
@@ -26,6 +26,9 @@ const LESS: f64 = 0.5;
 const MOST_HALVINGS: u32 = 6;
 /// Such flights in a step at most, as many as those of a body that follows its motion.
 const MOST_FLIGHTS: f64 = 4096.0;
+/// And such as those of unlike bodies that snap taut: light ones between heavy ones take up the energy of these there, for which no flight is
+/// short enough.
+const MOST_OF_A_SNAP: f64 = 16.0;
 /// The part of the rate at which something closes in, and how much more than solutions leave anyway, from which on no velocities obey the law.
 const UNSOLVED: f64 = 1.0 / 8.0;
 /// The part of that rate from which on friction holds what would slip.
@@ -91,6 +94,7 @@ impl Problem<'_> {
         let splits = if self.has_like_joints() { Splits::Jointed } else { Splits::Own };
         let horizon = |s: &Cow<'_, RigidBody>| s.horizon_within(end, self.options.step, splits);
         let mut end = if is_whole { end } else { moved().map(horizon).fold(end, f64::min) };
+        let longest = end;
         let mut tried = self.attempt(now, end, Room::Kept);
         if let Some(stopped) = self.stopped(&tried, [now, end]) {
             return stopped;
@@ -99,12 +103,11 @@ impl Problem<'_> {
         let gained = |tried: &Attempt, end: f64| {
             Gained::of(self.states, &tried.system, self.options, [now, end - now])
         };
-        let shortest = self.options.step / MOST_FLIGHTS;
         for _ in 0..MOST_HALVINGS {
-            let is_met = tried.found.missed <= OFF_JOINT * self.speed() && !self.turns_over(&tried);
+            let is_met = self.is_met(&tried);
             let before = is_of_joints.then(|| gained(&tried, end)).filter(|gained| gained.is_much());
             let half = now + 0.5 * (end - now);
-            if is_met && before.is_none() || half - now < shortest {
+            if is_met && before.is_none() || half - now < self.shortest(is_met) {
                 break;
             }
             let shorter = self.attempt(now, half, Room::Kept);
@@ -114,6 +117,9 @@ impl Problem<'_> {
                 break;
             }
             (end, tried) = (half, shorter);
+        }
+        if let Some(rigid) = self.snapped(&tried, [now, longest]) {
+            return rigid;
         }
         let closing = self.closing();
         let rate = closing.map_or(0.0, |closing| closing.rate);
@@ -168,12 +174,42 @@ impl Problem<'_> {
         {
             return None;
         }
-        // The joints of the chain are rigid then, and have no motors.
+        self.with_rigid(&of_closed_chains(self.members, self.states, self.contacts, self.joints)?, [now, end])
+    }
+
+    /// The shortest flight that is tried, where joints are met at the end of a flight twice as long, or not.
+    fn shortest(&self, is_met: bool) -> f64 {
+        self.options.step / if is_met || self.has_like_joints() { MOST_FLIGHTS } else { MOST_OF_A_SNAP }
+    }
+
+    /// Are joints met at the end of a flight, and do they go less than half round in it?
+    fn is_met(&self, attempt: &Attempt) -> bool {
+        attempt.found.missed <= OFF_JOINT * self.speed() && !self.turns_over(attempt)
+    }
+
+    /// Bodies that move, and that joints without motors connect, as one where no flight is short enough for their joints.
+    fn snapped(&self, tried: &Attempt, span: [f64; 2]) -> Option<Attempt> {
+        if self.is_met(tried) || self.has_like_joints() && !self.is_torn(tried) {
+            return None;
+        }
+        let Problem { members, states, contacts, joints, .. } = *self;
+        self.with_rigid(&of_open_chains(members, states, contacts, joints)?, span)
+    }
+
+    /// The bodies of these joints as one.
+    fn with_rigid(&self, numbers: &[usize], [now, end]: [f64; 2]) -> Option<Attempt> {
+        // Motors do nothing then.
         let ahead =
             Ahead { length: end - now, step: self.options.step, forces: false, passed: 0.0, spent: 0.0 };
-        let (contacts, joints) = locked(self.members, self.states, self.contacts, self.joints, ahead)?;
+        let (contacts, joints) =
+            locked(numbers, self.members, self.states, self.contacts, self.joints, ahead);
         let contacts: Vec<&ContactPoint> = contacts.iter().collect();
-        let attempt = Problem { contacts: &contacts, joints: &joints, ..*self }.attempt(now, end, Room::Kept);
+        let attempt = Problem { contacts: &contacts, joints: &joints, ..*self }.attempt_with(
+            now,
+            end,
+            Room::Kept,
+            Brakes::None,
+        );
         (attempt.found.missed <= OFF_JOINT * self.speed() && attempt.may_last()).then_some(attempt)
     }
 

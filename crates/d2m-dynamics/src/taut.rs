@@ -12,26 +12,25 @@ use crate::solved_body::moves;
 use crate::union::{join, root};
 use std::borrow::Cow;
 
-/// Of the contacts of an island, with its bodies: rows by which all joints hold their bodies as they are, and these joints. None: the joints
-/// close no chain. What stands still or follows its motion is one body here.
+/// Of the contacts of an island, with its bodies: rows by which these joints hold their bodies as they are, and all joints as they are then.
 pub(crate) fn locked(
+    numbers: &[usize],
     members: &[usize],
     states: &[Cow<'_, RigidBody>],
     contacts: &[&ContactPoint],
     joints: &[Joined],
     ahead: Ahead,
-) -> Option<(Vec<ContactPoint>, Vec<Joined>)> {
+) -> (Vec<ContactPoint>, Vec<Joined>) {
     let place = |body: usize| members.binary_search(&body).unwrap_or_default();
-    let numbers = of_closed_chains(members, states, contacts, joints)?;
     let mut held = joints.to_vec();
     let is_replaced = |contact: &&ContactPoint| contact.joint().is_some_and(|joint| numbers.contains(&joint));
     let mut rows: Vec<ContactPoint> = contacts.iter().filter(|c| !is_replaced(c)).map(|c| **c).collect();
-    for number in numbers {
+    for &number in numbers {
         let pair = joints[number].bodies.map(|body| &*states[place(body)]);
         held[number] = joints[number].fixed_at(pair);
         rows.extend(held[number].rows(number, pair, ahead));
     }
-    Some((rows, held))
+    (rows, held)
 }
 
 /// The numbers of the joints that hold these bodies to others, in order. None: they close no chain.
@@ -42,10 +41,30 @@ pub(crate) fn of_closed_chains(
     joints: &[Joined],
 ) -> Option<Vec<usize>> {
     let place = |body: usize| members.binary_search(&body).unwrap_or_default();
+    let numbers = numbers(contacts, joints);
+    closes_chain(&numbers, states, joints, place).then_some(numbers)
+}
+
+/// The numbers of the joints that hold two of these bodies which move, in order. None: there is none, or a motor drives one.
+pub(crate) fn of_open_chains(
+    members: &[usize],
+    states: &[Cow<'_, RigidBody>],
+    contacts: &[&ContactPoint],
+    joints: &[Joined],
+) -> Option<Vec<usize>> {
+    let mut numbers = numbers(contacts, joints);
+    let is_moved = |body: usize| moves(&states[members.binary_search(&body).unwrap_or_default()]);
+    numbers.retain(|&number| joints[number].bodies.into_iter().all(is_moved));
+    let is_driven = numbers.iter().any(|&number| joints[number].joint.motor.is_some());
+    (!is_driven && !numbers.is_empty()).then_some(numbers)
+}
+
+/// The numbers of the joints of two bodies among these contacts, in order.
+fn numbers(contacts: &[&ContactPoint], joints: &[Joined]) -> Vec<usize> {
     let mut numbers: Vec<usize> = contacts.iter().filter_map(|contact| contact.joint()).collect();
     numbers.dedup();
     numbers.retain(|&number| joints[number].is_between_bodies());
-    closes_chain(&numbers, states, joints, place).then_some(numbers)
+    numbers
 }
 
 /// Do these joints close a chain?
