@@ -1,5 +1,6 @@
 //! Questions about the bodies where they are now.
 
+use crate::rigid_body::Role;
 use crate::shown::shown;
 use crate::{BodyId, Simulation};
 use d2m_bvh::{
@@ -14,7 +15,7 @@ use std::sync::Arc;
 
 /// The bodies of a simulation as they are now, at rest in a [`World`], whose queries state which bodies are near
 /// ([`World::proximities`], [`World::clearances_below`]), what something would meet on its way ([`World::first_contact_of`]). What does not meet
-/// in the simulation is ignored there. The simulation goes on without it.
+/// in the simulation is ignored there, so sensors meet nothing. The simulation goes on without it.
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, ProximityOptions, QueryOptions};
@@ -89,12 +90,18 @@ pub enum RayAnswer {
 
 /// What does not move of itself meets nothing of its kind.
 const HELD: Group = Group(0);
+/// What forces and contacts move.
+const MOVED: Group = Group(1);
+/// What others pass through.
+const SENSED: Group = Group(2);
 
 impl Simulation {
     /// The bodies where they are now, for queries with these options.
     pub fn frozen(&self, options: QueryOptions) -> Frozen {
         let mut world = World::new(options);
-        world.ignore_groups(HELD, HELD, true);
+        for (a, b) in [(HELD, HELD), (SENSED, HELD), (SENSED, MOVED), (SENSED, SENSED)] {
+            world.ignore_groups(a, b, true);
+        }
         let ids: Vec<BodyId> = self.ids().collect();
         let added: Vec<d2m_world::BodyId> = ids
             .iter()
@@ -107,7 +114,12 @@ impl Simulation {
                     .with_orientation(pose.rotation);
                 let body =
                     Body::new(Arc::clone(&own.tree), rest).with_solid(own.solid).with_radius(own.rounding);
-                world.add(if own.is_dynamic() { body } else { body.with_group(HELD) })
+                let group = match own.role {
+                    Role::Sensor => SENSED,
+                    _ if own.is_dynamic() => MOVED,
+                    _ => HELD,
+                };
+                world.add(body.with_group(group))
             })
             .collect();
         let is_of = |pair: (usize, usize)| {
@@ -149,7 +161,8 @@ impl Frozen {
         self.world.ids().nth(place)
     }
 
-    /// What a point meets first on a straight way from `origin` to `origin + way`: [`World::first_contact_of`] of a body that is a point.
+    /// What a point meets first on a straight way from `origin` to `origin + way`: [`World::first_contact_of`] of a body that is a point,
+    /// in any group. It passes through sensors, as bodies do.
     ///
     /// # Errors
     /// Numbers that are not finite.
@@ -158,7 +171,8 @@ impl Frozen {
         let motion = ConstantTwist::try_new(origin, glam::DQuat::IDENTITY, way, DVec3::ZERO)
             .map_err(|_| RayError::BadRay { origin, way })?;
         let point = Arc::new(MeshTree::new(TriMesh::point(DVec3::ZERO)?));
-        let body = world.add(Body::new(point, motion));
+        // It meets what a body that moves would meet, in any group.
+        let body = world.add(Body::new(point, motion).with_group(MOVED));
         let plan = [PlannedMotion { body, motion: Arc::new(motion) }];
         // A part of the way, as a length that is rounded outward.
         let length = IntervalVec3::point(way).norm();

@@ -105,7 +105,8 @@ pub struct Segment {
 pub enum TouchChange {
     /// The first impulse between them.
     Began,
-    /// They are further apart than 1.5 gaps, as the step found that began then, or one of them was removed.
+    /// They are further apart than 1.5 gaps, as the step found that began then, or meet no more (their groups, a pair that is ignored, none of
+    /// them dynamic), or one of them was removed.
     Ended,
 }
 

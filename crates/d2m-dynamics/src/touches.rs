@@ -36,7 +36,7 @@ impl Simulation {
     }
 
     /// At the end of a step that began at a time, in which impulses acted between the pairs `pressed`: pairs without, one of which moves and
-    /// whose bodies were found apart, touch no more.
+    /// whose bodies were found apart, touch no more. Nor do those that meet no more, wherever they are: nobody looks for them.
     pub(crate) fn end_touches(&mut self, began: f64, pressed: &BTreeMap<(usize, usize), [Momenta; 2]>) {
         let most = AROUND * self.options.gap;
         let is_near = |pair: &(usize, usize)| {
@@ -46,7 +46,8 @@ impl Simulation {
         let moves = |&(a, b): &(usize, usize)| self.bodies[a].is_awake() || self.bodies[b].is_awake();
         let is_solid = |&(a, b): &(usize, usize)| [a, b].iter().all(|&i| self.bodies[i].role == Role::Body);
         let ended = |pair: &&(usize, usize)| {
-            is_solid(pair) && !pressed.contains_key(*pair) && moves(pair) && !is_near(pair)
+            let is_apart = !pressed.contains_key(*pair) && moves(pair) && !is_near(pair);
+            is_solid(pair) && (is_apart || !self.meets(pair.0, pair.1))
         };
         let ended: Vec<(usize, usize)> = self.touching.iter().filter(ended).copied().collect();
         for pair in ended {

@@ -2,14 +2,14 @@
 
 mod ground;
 
-use d2m_bvh::{MeshTree, Mode, QueryOptions, StartState, TriMesh, Window};
+use d2m_bvh::{MeshTree, Mode, ProximityOptions, QueryOptions, StartState, TriMesh, Window};
 use d2m_dynamics::{
     Body, BodyId, Groups, Joint, Kind, Mass, MassProperties, Part, Presence, RayAnswer, Simulation,
     SimulationError, SimulationOptions, TouchChange,
 };
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::ConstantTwist;
-use d2m_world::PlannedMotion;
+use d2m_world::{FirstContact, PlannedMotion};
 use glam::{BVec3, DMat3, DVec3};
 use ground::{at, cube, floor, rest, tree};
 use std::sync::Arc;
@@ -41,6 +41,63 @@ fn touches_begin_and_end_once() {
         matches!(events[..], [event] if event.change == TouchChange::Ended && event.b == body),
         "{events:?}"
     );
+}
+
+/// What meets no more touches no more, wherever it is: of two static bodies nobody looks at the distance.
+#[test]
+fn what_meets_no_more_touches_no_more() {
+    let changes: [fn(&mut Simulation, [BodyId; 2]); 3] = [
+        |simulation, [_, body]| simulation.set_kind(body, Kind::Static).unwrap(),
+        |simulation, [ground, body]| simulation.ignore(ground, body),
+        |simulation, [_, body]| simulation.set_groups(body, Groups { meets: 0, ..Groups::ALL }).unwrap(),
+    ];
+    for change in changes {
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        let ground = simulation.add(&floor()).unwrap();
+        let body = simulation.add(&Body::new("cube", cube()).with_position(DVec3::Y)).unwrap();
+        rest(&mut simulation, body);
+        assert!(simulation.touch(ground, body));
+        change(&mut simulation, [ground, body]);
+        let ended = simulation.step().unwrap().touches;
+        assert!(matches!(ended[..], [event] if event.change == TouchChange::Ended), "{ended:?}");
+        simulation.set_pose(body, at(0.0, 30.0, 0.0)).unwrap();
+        assert!(!simulation.touch(ground, body) && simulation.step().unwrap().touches.is_empty());
+    }
+}
+
+/// Sensors meet nothing in questions about the present either: what is in one is no pair, and rays and plans pass through it.
+#[test]
+fn sensors_stand_in_nobodys_way() {
+    for kind in [Kind::Static, Kind::Driven, Kind::Dynamic] {
+        let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
+        let zone = Body::new("zone", cube()).with_kind(kind).with_presence(Presence::Sensor);
+        let zone = simulation.add(&zone).unwrap();
+        let small = tree("box?x=0.1&y=0.1&z=0.1");
+        let [inside, wall] = [("inside", 0.0), ("wall", 2.0)].map(|(name, x)| {
+            let kind = if name == "wall" { Kind::Static } else { Kind::Dynamic };
+            let body = Body::new(name, Arc::clone(&small)).with_position(DVec3::X * x).with_kind(kind);
+            simulation.add_checked(&body).unwrap()
+        });
+        simulation.step().unwrap();
+        let now = simulation.frozen(QueryOptions::default());
+        let near = now.world().proximities(0.0, &ProximityOptions::new(3.0)).unwrap();
+        let near: Vec<_> = near.iter().map(|pair| (now.id(pair.a), now.id(pair.b))).collect();
+        assert_eq!(near, [(inside, wall)]);
+        // Through the zone above what is in it.
+        let up = DVec3::Y * 0.3;
+        assert_eq!(now.ray(up - DVec3::X * 3.0, DVec3::X * 6.0).unwrap(), RayAnswer::Free);
+        let hit = now.ray(DVec3::X * 0.3, DVec3::X * 6.0).unwrap();
+        assert!(matches!(hit, RayAnswer::Hit { body, lo, .. } if body == wall && lo > 1.59), "{hit:?}");
+        let plan = |x: f64| {
+            let body = now.body(inside).unwrap();
+            let motion = Arc::new(ConstantTwist::REST.with_linear_velocity(DVec3::X * x));
+            now.world().first_contact_of(&[PlannedMotion { body, motion }], Window::UNIT).unwrap()
+        };
+        assert!(matches!(plan(-3.0), FirstContact::Separated));
+        assert!(matches!(plan(3.0), FirstContact::Contact { contact, .. } if contact.time_lo > 0.59));
+        // The distance of any two is known nevertheless.
+        assert_eq!(now.distance(zone, inside).unwrap().lower, 0.0);
+    }
 }
 
 /// What a sensor no longer looks for has left it.

@@ -46,8 +46,8 @@ pub struct PathClearance {
 }
 
 impl RobotScene {
-    /// How near a path comes to a contact: the least distance of all pairs that are checked, less the minimum separation, enclosed to
-    /// 10⁻⁶ of itself (or four tolerances of the pair). `None` where no pair is checked.
+    /// How near a path comes to a contact: the least distance of all pairs that are checked, enclosed to 10⁻⁶ of itself (or four
+    /// tolerances of the pair), less the minimum separation. `None` where no pair is checked.
     ///
     /// Pair by pair, that of the nearest samples first: the others are only of interest where they come nearer than what is known, so
     /// most of them are one search that proves that they do not. The budget of the options is one for all pairs.
