@@ -8,7 +8,7 @@
 use super::MovingTriangle;
 use crate::{proven_crossing, triangle_distance};
 use d2m_interval::Interval;
-use d2m_lanes::UP;
+use d2m_lanes::{UP, power_of_two_below};
 use d2m_motion::length;
 use glam::DVec3;
 
@@ -16,6 +16,9 @@ use glam::DVec3;
 const PLACED: f64 = 8.0 * f64::EPSILON;
 /// Products of up to five factors and sums of up to twelve such products round by less than this part of the sum of magnitudes.
 const PRODUCTS: f64 = 32.0 * f64::EPSILON;
+
+/// Underflow takes 2⁻¹⁰⁷⁵ of a product or less; fewer than 2¹⁰ of these, each times at most 2⁸ (four lengths and more below four), are no more than this.
+const LOST: f64 = f64::MIN_POSITIVE;
 
 /// A point that moves straight.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +36,14 @@ impl core::ops::Sub for Line {
 }
 
 impl Line {
+    /// In units of length and of time that are powers of two: exact, but for less than the least number.
+    fn scaled(self, length: f64, time: f64) -> Self {
+        // In this order no part of it is lost that would count in the end.
+        let velocity =
+            if length < 1.0 { self.velocity / length * time } else { self.velocity * time / length };
+        Self { place: self.place / length, velocity }
+    }
+
     /// Its largest distance from the origin within `half` of the middle.
     fn reach(&self, half: f64) -> f64 {
         (length(self.place) + half * length(self.velocity)) * UP
@@ -56,8 +67,9 @@ impl StraightPair {
         let span = Interval::new(from, to);
         let states = triangles.map(|triangle| triangle.motion.enclose_state_about(middle, origin));
         let kinematics = triangles.map(|triangle| triangle.motion.enclose_kinematics(span));
-        let square = 0.5 * half * half;
-        let mut error = square * (kinematics[0].linear_rate - kinematics[1].linear_rate).bound_length() * UP;
+        // ½ h² times a rate; h² alone would be lost to underflow where the rate is large.
+        let bent = |rate: f64| if half < 1.0 { half * rate * half * 0.5 } else { 0.5 * half * half * rate };
+        let mut error = bent((kinematics[0].linear_rate - kinematics[1].linear_rate).bound_length()) * UP;
         let mut corners = [[Line { place: DVec3::ZERO, velocity: DVec3::ZERO }; 3]; 2];
         for k in 0..2 {
             let (state, rates) = (&states[k], &kinematics[k]);
@@ -72,7 +84,7 @@ impl StraightPair {
                 + PLACED * (far + length(state.position))
                 + half * (state.linear_radius + state.angular_radius * far)
                 + half * (spin * (state.rotation_radius * far) + PLACED * speed);
-            error += (placed + square * bend) * UP + f64::MIN_POSITIVE;
+            error += (placed + bent(bend)) * UP + f64::MIN_POSITIVE;
             corners[k] = given.map(|p| {
                 let arm = state.rotation * (p - state.at);
                 Line { place: arm + state.position, velocity: state.linear + state.angular.cross(arm) }
@@ -127,9 +139,15 @@ impl StraightPair {
 
     /// With d = p − q₀, e = q₁ − q₀, f = q₂ − q₀ and N = e × f, all linear or quadratic in time: the height is d·N/|N|, and the foot is
     /// inside where N·(d × f), N·(e × d) and what they leave of N·N are not negative.
+    ///
+    /// Of four lengths below 10⁻⁸¹ the product is none: all are taken in a unit in which the longest is from one to two, and the velocities in one
+    /// of time in which `half` is. What underflow takes of products there is less than [`LOST`], which is no part of what is claimed.
     fn slides(&self, vertex: Line, face: &[Line; 3], level: f64) -> bool {
-        let (d, e, f) = (vertex - face[0], face[1] - face[0], face[2] - face[0]);
-        let h = self.half;
+        let lines = [vertex - face[0], face[1] - face[0], face[2] - face[0]];
+        let longest = lines.iter().map(|line| line.reach(self.half)).fold(self.error, f64::max);
+        let (length_unit, time_unit) = (power_of_two_below(longest), power_of_two_below(self.half));
+        let [d, e, f] = lines.map(|line| line.scaled(length_unit, time_unit));
+        let (h, level, error) = (self.half / time_unit, level / length_unit, self.error / length_unit);
         let [n0, n1, n2] = [
             e.place.cross(f.place),
             e.velocity.cross(f.place) + e.place.cross(f.velocity),
@@ -145,26 +163,27 @@ impl StraightPair {
             d.velocity.dot(n2),
         ];
         let height = c[0].abs() + (c[1].abs() + (c[2].abs() + c[3].abs() * h) * h) * h;
-        let height = height + PRODUCTS * magnitude * (d.reach(h) + self.error);
+        let height = height + PRODUCTS * magnitude * (d.reach(h) + error) + LOST;
         // Also where something is not a number.
         if !(least > 0.0 && height * UP <= level * least) {
             return false;
         }
         let most = length(n0) + turned;
-        let product = |x: Line| most * x.reach(h) * (d.reach(h) + self.error);
+        let product = |x: Line| most * x.reach(h) * (d.reach(h) + error);
         let known = |x: Line| length(n0) * length(x.place) * length(d.place);
-        let slack = |x: Line| (product(x) - known(x)) + PRODUCTS * product(x);
+        let slack = |x: Line| (product(x) - known(x)) + PRODUCTS * product(x) + LOST;
         let [towards_e, towards_f] = [n0.dot(d.place.cross(f.place)), n0.dot(e.place.cross(d.place))];
         let (loss_e, loss_f) = (slack(f), slack(e));
         towards_e >= loss_e
             && towards_f >= loss_f
-            && least * least - towards_e - towards_f - loss_e - loss_f - PRODUCTS * most * most >= 0.0
+            && least * least - towards_e - towards_f - loss_e - loss_f - PRODUCTS * most * most >= LOST
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use d2m_lanes::power_of_two;
     use d2m_testing::{Draw, KnuthRandom};
 
     /// Triangles whose vertices move straight, each its own way: where a certificate says that they stay within a level, samples do.
@@ -200,5 +219,51 @@ mod tests {
             }
         }
         assert!(claims.iter().all(|count| *count > 5), "{claims:?}");
+    }
+
+    /// Exact scalings of lengths and of times change no claim, as long as lengths are numbers.
+    #[test]
+    fn claims_are_the_same_in_any_unit() {
+        let mut random = KnuthRandom(272);
+        let mut claims = 0;
+        for round in 0..3000 {
+            let mut line = |up: f64| Line {
+                place: random.vector() * DVec3::new(1.0, 1.0, 0.1) + DVec3::Z * up,
+                velocity: random.vector() * 0.03,
+            };
+            let corners = [[(); 3].map(|()| line(0.0)), [(); 3].map(|()| line(0.3))];
+            let level = [0.3, 0.5, 0.8][round % 3];
+            let found = |length: i32, time: i32| {
+                let unit = power_of_two(length);
+                let moved = |line: Line| Line {
+                    place: line.place * unit,
+                    velocity: line.velocity * (unit * power_of_two(-time)),
+                };
+                let corners = corners.map(|lines| lines.map(moved));
+                let pair = StraightPair { corners, half: 0.5 * power_of_two(time), error: 0.0 };
+                [pair.points_stay(level * unit), pair.vertices_stay(level * unit)]
+            };
+            let usual = found(0, 0);
+            claims += u32::from(usual[1]);
+            for (length, time) in [(-270, 0), (-300, -400), (-340, 300), (-500, 20), (190, -60), (300, 300)] {
+                assert_eq!(found(length, time), usual, "round {round}: {length} {time}");
+            }
+        }
+        assert!(claims > 20, "{claims}");
+    }
+
+    /// In the plane of a face so small that no product of its sides is a number, far beside it.
+    #[test]
+    fn nothing_is_above_a_face_that_it_is_far_from() {
+        let rest = |place: DVec3| Line { place, velocity: DVec3::ZERO };
+        for size in [1e-75, 1e-90, 1e-110, 1e-160, 1e-200] {
+            for far in [3.0 * size, 1e-60, 1.0] {
+                let face = [DVec3::ZERO, DVec3::X * size, DVec3::Y * size].map(rest);
+                let spike = [DVec3::X * far, DVec3::new(far, size, far), DVec3::new(far, -size, far)].map(rest);
+                let pair = StraightPair { corners: [face, spike], half: 0.5, error: 0.0 };
+                assert!(!pair.stay_within(0.5 * far), "{size:e} {far:e}");
+                assert!(pair.stay_within(1.1 * far) || far == 1.0, "{size:e} {far:e}");
+            }
+        }
     }
 }
