@@ -259,7 +259,8 @@ mod tests {
         for size in [1e-75, 1e-90, 1e-110, 1e-160, 1e-200] {
             for far in [3.0 * size, 1e-60, 1.0] {
                 let face = [DVec3::ZERO, DVec3::X * size, DVec3::Y * size].map(rest);
-                let spike = [DVec3::X * far, DVec3::new(far, size, far), DVec3::new(far, -size, far)].map(rest);
+                let spike =
+                    [DVec3::X * far, DVec3::new(far, size, far), DVec3::new(far, -size, far)].map(rest);
                 let pair = StraightPair { corners: [face, spike], half: 0.5, error: 0.0 };
                 assert!(!pair.stay_within(0.5 * far), "{size:e} {far:e}");
                 assert!(pair.stay_within(1.1 * far) || far == 1.0, "{size:e} {far:e}");
