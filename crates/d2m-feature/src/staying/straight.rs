@@ -17,7 +17,8 @@ const PLACED: f64 = 8.0 * f64::EPSILON;
 /// Products of up to five factors and sums of up to twelve such products round by less than this part of the sum of magnitudes.
 const PRODUCTS: f64 = 32.0 * f64::EPSILON;
 
-/// Underflow takes 2⁻¹⁰⁷⁵ of a product or less; fewer than 2¹⁰ of these, each times at most 2⁸ (four lengths and more below four), are no more than this.
+/// Underflow takes 2⁻¹⁰⁷⁵ of a product or less; fewer than 2¹⁰ of these, each times at most 2⁸ (four lengths and more
+/// below four), are no more than this.
 const LOST: f64 = f64::MIN_POSITIVE;
 
 /// A point that moves straight.
@@ -140,8 +141,9 @@ impl StraightPair {
     /// With d = p − q₀, e = q₁ − q₀, f = q₂ − q₀ and N = e × f, all linear or quadratic in time: the height is d·N/|N|, and the foot is
     /// inside where N·(d × f), N·(e × d) and what they leave of N·N are not negative.
     ///
-    /// Of four lengths below 10⁻⁸¹ the product is none: all are taken in a unit in which the longest is from one to two, and the velocities in one
-    /// of time in which `half` is. What underflow takes of products there is less than [`LOST`], which is no part of what is claimed.
+    /// Of four lengths below 10⁻⁸¹ the product is none: all are taken in a unit in which the longest is from one to two, and
+    /// the velocities in one of time in which `half` is. What underflow takes of products there is less than [`LOST`], which
+    /// is no part of what is claimed.
     fn slides(&self, vertex: Line, face: &[Line; 3], level: f64) -> bool {
         let lines = [vertex - face[0], face[1] - face[0], face[2] - face[0]];
         let longest = lines.iter().map(|line| line.reach(self.half)).fold(self.error, f64::max);
