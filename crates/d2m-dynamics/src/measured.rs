@@ -24,6 +24,9 @@ const FLAT: f64 = 0.02;
 /// till then, do not keep it apart.
 const TIGHT: f64 = 0.3;
 
+/// Contacts along the normal of a face from which on they are those of a face.
+const FACE: usize = 3;
+
 /// The part of the load of a pair from which on it counts that a contact bears it.
 const BEARING: f64 = 1.0 / 16.0;
 
@@ -74,7 +77,8 @@ pub(crate) fn measure(
         if is_edges(p) && p.tilt > 0.0 { along(p, &normals, TILT) } else { Some(flatten(p).unwrap_or(*p)) }
     };
     let found: Vec<Proximity> = wide.iter().filter_map(straight).collect();
-    let reduced = reduce_proximities(&found, TILT);
+    let chosen = reduce_proximities(&found, TILT);
+    let reduced = [beside_askew(&chosen, || wide.iter().filter_map(flatten)), chosen].concat();
     // What bears a part of the load that counts stays a contact as long as it is near: without it the body would tip over it.
     let load: f64 = before.iter().map(|contact| contact.impulse).sum();
     let bears = |p: &&Proximity| {
@@ -108,6 +112,25 @@ pub(crate) fn measure(
     all.extend(wide.iter().filter(is_tight));
     let contacts = all.iter().filter(|p| p.normal.is_normalized()).map(contact).collect();
     Ok(Measured { contacts, features: wide.len(), apart, normal })
+}
+
+/// Beside the rim of a face that lies on another one normals are askew: what stands on such a contact pushes it aside and tips, as a heavy body on a
+/// light one without friction. Where one was chosen for a corner of the faces these are the corners along their own normals.
+fn beside_askew<F: Iterator<Item = Proximity>>(chosen: &[Proximity], flat: impl Fn() -> F) -> Vec<Proximity> {
+    let mut added: Vec<Proximity> = Vec::new();
+    for askew in chosen {
+        let near = |p: &Proximity| (p.normal - askew.normal).length() <= TILT;
+        let mut of_face: Vec<Proximity> = flat().filter(near).collect();
+        let Some(closest) = of_face.first().copied() else { continue };
+        of_face.retain(|p| (p.normal - closest.normal).length() <= FLAT);
+        if of_face.len() >= FACE && !of_face.contains(askew) {
+            let corners = reduce_proximities(&of_face, TILT);
+            added.extend(corners.into_iter().filter(|p| !chosen.contains(p)));
+        }
+    }
+    added.sort_by(|x, y| x.distance.total_cmp(&y.distance));
+    added.dedup();
+    added
 }
 
 /// Some total order.
