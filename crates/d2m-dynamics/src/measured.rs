@@ -122,8 +122,9 @@ fn beside_askew<F: Iterator<Item = Proximity>>(chosen: &[Proximity], flat: impl 
         let near = |p: &Proximity| (p.normal - askew.normal).length() <= TILT;
         let mut of_face: Vec<Proximity> = flat().filter(near).collect();
         let Some(closest) = of_face.first().copied() else { continue };
-        of_face.retain(|p| (p.normal - closest.normal).length() <= FLAT);
-        if of_face.len() >= FACE && !of_face.contains(askew) {
+        let is_along = |p: &Proximity| (p.normal - closest.normal).length() <= FLAT;
+        of_face.retain(is_along);
+        if of_face.len() >= FACE && !is_along(askew) {
             let corners = reduce_proximities(&of_face, TILT);
             added.extend(corners.into_iter().filter(|p| !chosen.contains(p)));
         }

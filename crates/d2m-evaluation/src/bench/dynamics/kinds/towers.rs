@@ -31,6 +31,13 @@ pub(super) fn cases(cases: &mut Vec<Case>, seed: u64) {
         }
         cases.push(Case::new("table", format!("under {ratio:.0e}"), 2.0, move |scene| table(scene, ratio)));
     }
+    for (count, heavy) in [(3, 2), (6, 5), (6, 3), (10, 9), (10, 5)] {
+        for width in [0.02, 0.1] {
+            let variant = format!("1e8 at {heavy} of {count} without friction {width} off the middle");
+            let build = move |scene| slippery(scene, count, heavy, width, seed);
+            cases.push(Case::new("weight", variant, 1.0, build).with_options(awake));
+        }
+    }
     for count in [2, 4, 7] {
         for part in [0.98, 1.02] {
             let variant = format!("of {count} at {part} of its limit");
@@ -93,6 +100,21 @@ fn weight(mut scene: Scene, ratio: f64, offset: f64) -> Result<Trial, Error> {
         scene.add(body.with_position(place))?;
     }
     under(scene, vec![stays(CREEP), rests(1e-3)])
+}
+
+/// A heavy box among light ones, without friction, each off the middle by up to a width, and turned: all normals are vertical, so nothing moves.
+fn slippery(mut scene: Scene, count: i32, heavy: i32, width: f64, seed: u64) -> Result<Trial, Error> {
+    scene.add(floor(0.0, 0.0)?)?;
+    let shape = cuboid(DVec3::splat(0.5))?;
+    let mut random = Xoshiro256::new(seed);
+    for k in 0..count {
+        let mut off = || random.range(-width, width);
+        let place = DVec3::new(off(), 0.5 + GAP + (1.0 + GAP) * f64::from(k), off());
+        let mass = if k == heavy { 1e8 } else { 1.0 };
+        let body = free(format!("box {k}"), &shape, 0.0).with_mass(Mass::Total(mass)).with_position(place);
+        scene.add(body.with_orientation(DQuat::from_rotation_y(10.0 * off())))?;
+    }
+    under(scene, vec![stays(20.0 * CREEP), rests(0.05)])
 }
 
 /// A heavy slab on four light legs.
