@@ -78,7 +78,9 @@ pub(crate) fn measure(
     };
     let found: Vec<Proximity> = wide.iter().filter_map(straight).collect();
     let chosen = reduce_proximities(&found, TILT);
-    let reduced = [beside_askew(&chosen, || wide.iter().filter_map(flatten)), chosen].concat();
+    let reduced =
+        [beside_askew(&chosen, (gap, material.friction), || wide.iter().filter_map(flatten)), chosen]
+            .concat();
     // What bears a part of the load that counts stays a contact as long as it is near: without it the body would tip over it.
     let load: f64 = before.iter().map(|contact| contact.impulse).sum();
     let bears = |p: &&Proximity| {
@@ -114,17 +116,21 @@ pub(crate) fn measure(
     Ok(Measured { contacts, features: wide.len(), apart, normal })
 }
 
-/// Beside the rim of a face that lies on another one normals are askew: what stands on such a contact pushes it aside and tips, as a heavy body on a
-/// light one without friction. Where one was chosen for a corner of the faces these are the corners along their own normals.
-fn beside_askew<F: Iterator<Item = Proximity>>(chosen: &[Proximity], flat: impl Fn() -> F) -> Vec<Proximity> {
+/// Beside the rim of a face that lies on another one normals are askew, and where friction does not hold them such contacts give way aside: what stands
+/// on one tips, as a heavy body on a light one. Where one was chosen for a corner of the faces, these are the corners along the faces' own normals.
+fn beside_askew<F: Iterator<Item = Proximity>>(
+    chosen: &[Proximity],
+    (gap, friction): (f64, f64),
+    flat: impl Fn() -> F,
+) -> Vec<Proximity> {
     let mut added: Vec<Proximity> = Vec::new();
     for askew in chosen {
         let near = |p: &Proximity| (p.normal - askew.normal).length() <= TILT;
         let mut of_face: Vec<Proximity> = flat().filter(near).collect();
         let Some(closest) = of_face.first().copied() else { continue };
-        let is_along = |p: &Proximity| (p.normal - closest.normal).length() <= FLAT;
-        of_face.retain(is_along);
-        if of_face.len() >= FACE && !is_along(askew) {
+        let is_along = |p: &Proximity, most: f64| (p.normal - closest.normal).length() <= most;
+        of_face.retain(|p| is_along(p, FLAT));
+        if of_face.len() >= FACE && !is_along(askew, flat_within(askew, gap).max(friction)) {
             let corners = reduce_proximities(&of_face, TILT);
             added.extend(corners.into_iter().filter(|p| !chosen.contains(p)));
         }
@@ -151,7 +157,12 @@ fn flattened(p: &Proximity, bodies: [&RigidBody; 2], poses: [&Pose; 2], gap: f64
         bodies[k].faces.nearest(&vertices[k], direction).map(|normal| poses[k].transform_vector(normal))
     };
     let normals: Vec<DVec3> = (0..2).filter_map(normal).collect();
-    along(p, &normals, (FLAT * gap / p.distance).clamp(FLAT, TILT))
+    along(p, &normals, flat_within(p, gap))
+}
+
+/// How far the direction of a proximity may be off the normal of a face to be taken for it.
+fn flat_within(p: &Proximity, gap: f64) -> f64 {
+    (FLAT * gap / p.distance).clamp(FLAT, TILT)
 }
 
 /// The proximity with the nearest of these normals and the distance along it, if there is one within `most`.
