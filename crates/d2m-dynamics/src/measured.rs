@@ -118,12 +118,17 @@ pub(crate) fn measure(
 
 /// Beside the rim of a face that lies on another one normals are askew, and where friction does not hold them such contacts give way aside: what stands
 /// on one tips, as a heavy body on a light one. Where one was chosen for a corner of the faces, these are the corners along the faces' own normals.
+/// What is touched from several sides, as a pin in its hole, is held by those.
 fn beside_askew<F: Iterator<Item = Proximity>>(
     chosen: &[Proximity],
     (gap, friction): (f64, f64),
     flat: impl Fn() -> F,
 ) -> Vec<Proximity> {
     let mut added: Vec<Proximity> = Vec::new();
+    let is_of_one_side = |p: &Proximity| (p.normal - chosen[0].normal).length() <= TILT;
+    if !chosen.iter().all(is_of_one_side) {
+        return added;
+    }
     for askew in chosen {
         let near = |p: &Proximity| (p.normal - askew.normal).length() <= TILT;
         let mut of_face: Vec<Proximity> = flat().filter(near).collect();
