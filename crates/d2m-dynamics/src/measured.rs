@@ -190,6 +190,31 @@ mod tests {
     use std::f64::consts::FRAC_PI_4;
     use std::sync::Arc;
 
+    /// Where corners lie beyond the rim of the face below by a thirtieth of the gap, faces have contacts of their own there, too, without friction.
+    #[test]
+    fn corners_beside_a_rim_push_along_the_face() {
+        let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()));
+        let faces = Arc::new(Faces::new(tree.mesh()));
+        let gap = 1e-3;
+        let cube = |place: DVec3, turn: f64| {
+            let body = Body::new("", Arc::clone(&tree)).with_position(place);
+            let body = body.with_orientation(DQuat::from_rotation_y(turn));
+            RigidBody::try_new(&body, Arc::clone(&faces), 0.0).unwrap()
+        };
+        let upright = |turn: f64, friction: f64| {
+            let corner = 0.5 * (turn.cos() + turn.sin());
+            let off = DVec3::new(0.5 + 0.04 * gap - corner, 1.0 + gap, 0.0);
+            let bodies = [cube(DVec3::ZERO, 0.0), cube(off, turn)];
+            let material = Material { restitution: 0.0, friction };
+            let found = measure(&bodies, (0, 1), 0.0, AROUND * gap, gap, material, &[]).unwrap().contacts;
+            found.iter().filter(|c| c.normal.y > 1.0 - 1e-12).count()
+        };
+        let counts: Vec<[usize; 2]> =
+            (1..20).map(|k| 0.02 * f64::from(k)).map(|turn| [0.0, 0.5].map(|f| upright(turn, f))).collect();
+        assert!(counts.iter().all(|[free, held]| *free >= 4 && free >= held), "{counts:?}");
+        assert!(counts.iter().any(|[_, held]| *held < 4), "{counts:?}");
+    }
+
     /// Two plates that lie on each other turned by 40 degrees: eight corners, of which four are contacts, now these and now those by rounding.
     #[test]
     fn what_bears_the_load_stays_a_contact() {
