@@ -8,7 +8,7 @@ use crate::joint_rows::Ahead;
 use crate::pull::pulls;
 use crate::rigid_body::RigidBody;
 use crate::solved_body::moves;
-use crate::taut::{locked, of_closed_chains, of_open_chains};
+use crate::taut::{between_moved, locked, of_closed_chains};
 use crate::velocity::Velocity;
 use glam::DVec3;
 use std::borrow::Cow;
@@ -193,7 +193,7 @@ impl Problem<'_> {
             return None;
         }
         let Problem { members, states, contacts, joints, .. } = *self;
-        self.with_rigid(&of_open_chains(members, states, contacts, joints)?, span)
+        self.with_rigid(&between_moved(members, states, contacts, joints)?, span)
     }
 
     /// The bodies of these joints as one.

@@ -126,7 +126,8 @@ fn beside_askew<F: Iterator<Item = Proximity>>(
 ) -> Vec<Proximity> {
     let mut added: Vec<Proximity> = Vec::new();
     let is_of_one_side = |p: &Proximity| (p.normal - chosen[0].normal).length() <= TILT;
-    if !chosen.iter().all(is_of_one_side) {
+    // What friction of such a slant holds gives way nowhere.
+    if friction >= TILT || !chosen.iter().all(is_of_one_side) {
         return added;
     }
     for askew in chosen {

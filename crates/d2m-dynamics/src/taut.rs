@@ -1,9 +1,10 @@
-//! Closed chains that are pulled taut.
+//! Chains that are pulled taut.
 //!
-//! Joints that close a chain may leave it no way to move although their equations for velocities do: a straight bridge of planks that is pinned
+//! Light bodies of a slack chain take up all of the energy of the heavy ones that pull it straight, in turns for which no flight is short enough. And
+//! joints that close a chain may leave it no way to move although their equations for velocities do: a straight bridge of planks that is pinned
 //! at both ends gives way across it only by lengths of the second order. No impulse has an arm there, so the corrections of a flight's end
-//! diverge in flights of any length. Such a chain stops: its bodies move as one until the end of the flight, which keeps momenta and takes
-//! the energy that they move against each other with, as an inelastic impact does.
+//! diverge in flights of any length. Bodies of such chains move as one until the end of the flight, which keeps momenta and takes the energy that
+//! they move against each other with, as an inelastic impact does.
 
 use crate::contact::ContactPoint;
 use crate::joint_rows::{Ahead, Joined};
@@ -33,7 +34,7 @@ pub(crate) fn locked(
     (rows, held)
 }
 
-/// The numbers of the joints that hold these bodies to others, in order. None: they close no chain.
+/// The numbers of the joints that hold these bodies to others, the world among them, in order. None: they close no chain.
 pub(crate) fn of_closed_chains(
     members: &[usize],
     states: &[Cow<'_, RigidBody>],
@@ -45,8 +46,9 @@ pub(crate) fn of_closed_chains(
     closes_chain(&numbers, states, joints, place).then_some(numbers)
 }
 
-/// The numbers of the joints that hold two of these bodies which move, in order. None: there is none, or a motor drives one.
-pub(crate) fn of_open_chains(
+/// The numbers of the joints that hold two of these bodies which move, in order, and not those to the world, about which the chain may turn. None: there is
+/// none, or a motor drives one.
+pub(crate) fn between_moved(
     members: &[usize],
     states: &[Cow<'_, RigidBody>],
     contacts: &[&ContactPoint],

@@ -1,10 +1,10 @@
-//! Chains: of rings that hang in each other, of bars on joints.
+//! Chains: of rings that hang in each other, of bars on joints; ropes of light rods with a load.
 use super::super::scene::{Error, Scene, tree};
 use super::law::{gets_along, never_more};
 use super::solids::cuboid;
 use super::trial::{Case, GAP, Trial, free, still, under};
 use d2m::motion::Pose;
-use d2m_dynamics::{Joint, JointKind};
+use d2m_dynamics::{Joint, JointKind, Mass};
 use glam::{DQuat, DVec3};
 use std::f64::consts::PI;
 
@@ -19,6 +19,24 @@ pub(super) fn cases(cases: &mut Vec<Case>) {
             cases.push(Case::new("chain", variant, seconds, move |scene| bars(scene, count, degrees)));
         }
     }
+    for ratio in [1e5, 1e6, 1e7] {
+        for (count, how) in [(10, Hung::Slack), (10, Hung::Oblique), (10, Hung::Upright), (50, Hung::Upright)]
+        {
+            let variant = format!("of {count} rods under {ratio:.0e}, {how:?}");
+            cases.push(Case::new("rope", variant, 1.5, move |scene| rope(scene, count, how, ratio)));
+        }
+    }
+}
+
+/// How a rope begins.
+#[derive(Clone, Copy, Debug)]
+enum Hung {
+    /// Its load falls until it is taut.
+    Slack,
+    /// It swings.
+    Oblique,
+    /// It hangs, and its load by a corner, about which that swings.
+    Upright,
 }
 
 /// Rings that hang in each other, the first one held: centers of neighbors keep within twice what the inner radius is above the tube's.
@@ -69,4 +87,43 @@ fn bars(mut scene: Scene, count: usize, degrees: f64) -> Result<Trial, Error> {
         return under(scene, vec![super::law::stays(GAP)]);
     }
     under(scene, vec![gets_along(last, DVec3::NEG_Y, 0.1)])
+}
+
+/// Rods on spherical joints, hung at one end, with a box so many times as heavy at the other end: the rope holds it, and no energy is gained.
+fn rope(mut scene: Scene, count: usize, how: Hung, ratio: f64) -> Result<Trial, Error> {
+    let (half, size) = (0.05, 0.15);
+    let shape = cuboid(DVec3::new(half, 0.01, 0.01))?;
+    let point = |k: usize| match how {
+        Hung::Slack => DVec3::new(0.08 * (k % 2) as f64, -0.06 * k as f64, 0.0),
+        Hung::Oblique => DVec3::new(0.6, -0.8, 0.0) * (2.0 * half * k as f64),
+        Hung::Upright => DVec3::NEG_Y * (2.0 * half * k as f64),
+    };
+    let (mut last, mut joints) = (None, Vec::new());
+    for k in 0..=count {
+        let from = point(k);
+        let body = if k < count {
+            let way = point(k + 1) - from;
+            let rod = free(format!("rod {k}"), &shape, 0.0).with_mass(Mass::Total(0.1));
+            rod.with_position(from + way * 0.5)
+                .with_orientation(DQuat::from_rotation_arc(DVec3::X, way.normalize()))
+        } else {
+            let load = free("load", &cuboid(DVec3::splat(size))?, 0.0).with_mass(Mass::Total(0.1 * ratio));
+            load.with_position(from + DVec3::new(size, -size - GAP, 0.0))
+        };
+        let id = scene.add(body)?;
+        joints.push(match last {
+            None => Joint::new(JointKind::Spherical, id, None, from),
+            Some(last) => Joint::new(JointKind::Spherical, last, Some(id), from),
+        });
+        last = Some(id);
+    }
+    joints.into_iter().try_for_each(|joint| scene.join(joint))?;
+    let Some(load) = last else { return Err("no load".into()) };
+    let longest = 2.0 * half * count as f64 + 2.0 * size;
+    let far = |poses: &[Pose]| poses.iter().map(|pose| pose.translation.length()).fold(0.0, f64::max);
+    let mut laws = vec![never_more("the distance from the top", longest, far)];
+    if !matches!(how, Hung::Upright) {
+        laws.push(gets_along(load, DVec3::NEG_Y, 0.03));
+    }
+    under(scene, laws)
 }
