@@ -107,8 +107,8 @@ impl System {
         let mut state = (self.impulses.clone(), shift, self.velocities());
         let mut anderson = Anderson::default();
         let most_soft = if self.has_joints || self.is_long() { JOINED } else { MOST_SOFT };
-        let mut soft = (SHARE / self.mass_ratio()).clamp(LEAST_SOFT, most_soft);
-        let hardest = (HARDEST * SHARE / self.mass_ratio()).max(LEAST_SOFT);
+        let mut soft = (SHARE / self.ratio()).clamp(LEAST_SOFT, most_soft);
+        let hardest = (HARDEST * SHARE / self.ratio()).max(LEAST_SOFT);
         let (mut last, mut losses) = (f64::INFINITY, 0);
         for _ in 0..effort.rounds {
             let (center, shift, velocity) = state;

@@ -6,6 +6,7 @@ use super::newton::{Effort, Start};
 use super::solver_body::SolverBody;
 use super::sweeps::Pace;
 use super::system::System;
+use crate::turning::extreme_eigenvalues;
 use crate::velocity::Velocity;
 use glam::DVec3;
 
@@ -214,8 +215,9 @@ impl System {
 
     /// What may be left of these bodies at the speeds that they have.
     pub(crate) fn tolerance(&self, accuracy: Accuracy) -> f64 {
-        // Of a light body that moves fast between heavy ones at rest no part may be left of these.
-        let speed = self.mean_speed().min(self.speed_of_mass());
+        // Of a light body that moves fast between heavy ones at rest no part may be left of these. Joints are solved far below that anyway.
+        let speed = self.mean_speed();
+        let speed = if self.has_joints { speed } else { speed.min(self.speed_of_mass()) };
         (accuracy.relative * speed).min(LOOSE * accuracy.precision).max(accuracy.precision)
     }
 
@@ -271,6 +273,16 @@ impl System {
         let (least, most) =
             inverses.fold((f64::INFINITY, 0.0f64), |(least, most), x| (least.min(x), most.max(x)));
         if most > 0.0 { most / least } else { 1.0 }
+    }
+
+    /// The same of masses, and of moments of inertia where rows hold turns.
+    pub(super) fn ratio(&self) -> f64 {
+        let holds_turns = self.blocks.iter().any(|block| block.directions[0] == DVec3::ZERO);
+        let moved = self.bodies.iter().filter(|body| holds_turns && body.inverse_mass > 0.0);
+        let inverses = moved.map(|body| extreme_eigenvalues(body.inverse_inertia));
+        let extremes = |[least, most]: [f64; 2], [x, y]: [f64; 2]| [least.min(x), most.max(y)];
+        let [least, most] = inverses.fold([f64::INFINITY, 0.0], extremes);
+        if least > 0.0 && most > 0.0 { (most / least).max(self.mass_ratio()) } else { self.mass_ratio() }
     }
 }
 
