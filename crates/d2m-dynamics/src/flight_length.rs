@@ -103,23 +103,32 @@ impl Problem<'_> {
         let gained = |tried: &Attempt, end: f64| {
             Gained::of(self.states, &tried.system, self.options, [now, end - now])
         };
-        for _ in 0..MOST_HALVINGS {
-            let is_met = self.is_met(&tried);
-            let before = is_of_joints.then(|| gained(&tried, end)).filter(|gained| gained.is_much());
-            let half = now + 0.5 * (end - now);
-            if is_met && before.is_none() || half - now < self.shortest(is_met) {
+        // Flights of like bodies end as one where joints tear, of unlike ones sooner; and if that is not found they are halved further.
+        let limits =
+            if self.has_like_joints() { &[MOST_FLIGHTS][..] } else { &[MOST_OF_A_SNAP, MOST_FLIGHTS] };
+        for &most_flights in limits {
+            for _ in 0..MOST_HALVINGS {
+                let is_met = self.is_met(&tried);
+                let before = is_of_joints.then(|| gained(&tried, end)).filter(|gained| gained.is_much());
+                let half = now + 0.5 * (end - now);
+                let shortest = self.options.step / if is_met { MOST_FLIGHTS } else { most_flights };
+                if is_met && before.is_none() || half - now < shortest {
+                    break;
+                }
+                let shorter = self.attempt(now, half, Room::Kept);
+                // What shorter flights gain as well comes from elsewhere.
+                let gains_as_much = |before: Gained| gained(&shorter, half).energy > LESS * before.energy;
+                if is_met && before.is_some_and(gains_as_much) {
+                    break;
+                }
+                (end, tried) = (half, shorter);
+            }
+            if self.is_met(&tried) {
                 break;
             }
-            let shorter = self.attempt(now, half, Room::Kept);
-            // What shorter flights gain as well comes from elsewhere.
-            let gains_as_much = |before: Gained| gained(&shorter, half).energy > LESS * before.energy;
-            if is_met && before.is_some_and(gains_as_much) {
-                break;
+            if let Some(rigid) = self.snapped(&tried, [now, longest]) {
+                return rigid;
             }
-            (end, tried) = (half, shorter);
-        }
-        if let Some(rigid) = self.snapped(&tried, [now, longest]) {
-            return rigid;
         }
         let closing = self.closing();
         let rate = closing.map_or(0.0, |closing| closing.rate);
@@ -177,11 +186,6 @@ impl Problem<'_> {
         self.with_rigid(&of_closed_chains(self.members, self.states, self.contacts, self.joints)?, [now, end])
     }
 
-    /// The shortest flight that is tried, where joints are met at the end of a flight twice as long, or not.
-    fn shortest(&self, is_met: bool) -> f64 {
-        self.options.step / if is_met || self.has_like_joints() { MOST_FLIGHTS } else { MOST_OF_A_SNAP }
-    }
-
     /// Are joints met at the end of a flight, and do they go less than half round in it?
     fn is_met(&self, attempt: &Attempt) -> bool {
         attempt.found.missed <= OFF_JOINT * self.speed() && !self.turns_over(attempt)
@@ -189,7 +193,7 @@ impl Problem<'_> {
 
     /// Bodies that move, and that joints without motors connect, as one where no flight is short enough for their joints.
     fn snapped(&self, tried: &Attempt, span: [f64; 2]) -> Option<Attempt> {
-        if self.is_met(tried) || self.has_like_joints() && !self.is_torn(tried) {
+        if self.has_like_joints() && !self.is_torn(tried) {
             return None;
         }
         let Problem { members, states, contacts, joints, .. } = *self;
