@@ -108,7 +108,9 @@ fn light_boxes_under_a_heavy_one_are_not_thrown() {
 fn stacks_of_which_some_touch_part_to_the_gap() {
     for touching in [[0, 3], [2, 5], [5, 6]] {
         let mut apart = [1e-9; 8];
-        touching.into_iter().for_each(|k: usize| apart[k] = 0.0);
+        for k in touching {
+            apart[k] = 0.0;
+        }
         let mut simulation = unlike(1e-2, 7, 1e6, &apart, &mut 3);
         let height = |simulation: &Simulation| simulation.position(simulation.ids().last().unwrap()).y - 7.5;
         assert_eq!(run(&mut simulation, 0.3).skipped, 0.0, "{touching:?}");
