@@ -26,8 +26,7 @@ const LESS: f64 = 0.5;
 const MOST_HALVINGS: u32 = 6;
 /// Such flights in a step at most, as many as those of a body that follows its motion.
 const MOST_FLIGHTS: f64 = 4096.0;
-/// And such as those of unlike bodies that snap taut: light ones between heavy ones take up the energy of these there, for which no flight is
-/// short enough.
+/// And of unlike bodies that snap taut: light ones take up the energy of heavy ones there, for which no flight is short enough.
 const MOST_OF_A_SNAP: f64 = 16.0;
 /// The part of the rate at which something closes in, and how much more than solutions leave anyway, from which on no velocities obey the law.
 const UNSOLVED: f64 = 1.0 / 8.0;
@@ -200,20 +199,15 @@ impl Problem<'_> {
         self.with_rigid(&between_moved(members, states, contacts, joints)?, span)
     }
 
-    /// The bodies of these joints as one.
+    /// The bodies of these joints as one; motors do nothing then.
     fn with_rigid(&self, numbers: &[usize], [now, end]: [f64; 2]) -> Option<Attempt> {
-        // Motors do nothing then.
         let ahead =
             Ahead { length: end - now, step: self.options.step, forces: false, passed: 0.0, spent: 0.0 };
         let (contacts, joints) =
             locked(numbers, self.members, self.states, self.contacts, self.joints, ahead);
         let contacts: Vec<&ContactPoint> = contacts.iter().collect();
-        let attempt = Problem { contacts: &contacts, joints: &joints, ..*self }.attempt_with(
-            now,
-            end,
-            Room::Kept,
-            Brakes::None,
-        );
+        let rigid = Problem { contacts: &contacts, joints: &joints, ..*self };
+        let attempt = rigid.attempt_with(now, end, Room::Kept, Brakes::None);
         (attempt.found.missed <= OFF_JOINT * self.speed() && attempt.may_last()).then_some(attempt)
     }
 

@@ -118,7 +118,7 @@ pub(crate) fn measure(
 
 /// Beside the rim of a face that lies on another one normals are askew, and where friction does not hold them such contacts give way aside: what stands
 /// on one tips, as a heavy body on a light one. Where one was chosen for a corner of the faces, these are the corners along the faces' own normals.
-/// What is touched from several sides, as a pin in its hole, is held by those.
+/// What friction of such a slant holds, or what is touched from several sides, as a pin in its hole, needs none.
 fn beside_askew<F: Iterator<Item = Proximity>>(
     chosen: &[Proximity],
     (gap, friction): (f64, f64),
@@ -126,7 +126,6 @@ fn beside_askew<F: Iterator<Item = Proximity>>(
 ) -> Vec<Proximity> {
     let mut added: Vec<Proximity> = Vec::new();
     let is_of_one_side = |p: &Proximity| (p.normal - chosen[0].normal).length() <= TILT;
-    // What friction of such a slant holds gives way nowhere.
     if friction >= TILT || !chosen.iter().all(is_of_one_side) {
         return added;
     }

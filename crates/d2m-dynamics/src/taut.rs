@@ -42,12 +42,19 @@ pub(crate) fn of_closed_chains(
     joints: &[Joined],
 ) -> Option<Vec<usize>> {
     let place = |body: usize| members.binary_search(&body).unwrap_or_default();
-    let numbers = numbers(contacts, joints);
-    closes_chain(&numbers, states, joints, place).then_some(numbers)
+    let (numbers, ground) = (numbers(contacts, joints), states.len());
+    let mut parent: Vec<usize> = (0..=ground).collect();
+    let closes = numbers.iter().any(|&number| {
+        let [a, b] =
+            joints[number].bodies.map(|body| if moves(&states[place(body)]) { place(body) } else { ground });
+        let is_closed = root(&mut parent, a) == root(&mut parent, b);
+        join(&mut parent, a, b);
+        is_closed
+    });
+    closes.then_some(numbers)
 }
 
-/// The numbers of the joints that hold two of these bodies which move, in order, and not those to the world, about which the chain may turn. None: there is
-/// none, or a motor drives one.
+/// Of the joints that hold two bodies which move, in order; about others the chain may turn. None: there is none, or a motor drives one.
 pub(crate) fn between_moved(
     members: &[usize],
     states: &[Cow<'_, RigidBody>],
@@ -67,22 +74,4 @@ fn numbers(contacts: &[&ContactPoint], joints: &[Joined]) -> Vec<usize> {
     numbers.dedup();
     numbers.retain(|&number| joints[number].is_between_bodies());
     numbers
-}
-
-/// Do these joints close a chain?
-fn closes_chain(
-    numbers: &[usize],
-    states: &[Cow<'_, RigidBody>],
-    joints: &[Joined],
-    place: impl Fn(usize) -> usize,
-) -> bool {
-    let ground = states.len();
-    let mut parent: Vec<usize> = (0..=ground).collect();
-    numbers.iter().any(|&number| {
-        let [a, b] =
-            joints[number].bodies.map(|body| if moves(&states[place(body)]) { place(body) } else { ground });
-        let is_closed = root(&mut parent, a) == root(&mut parent, b);
-        join(&mut parent, a, b);
-        is_closed
-    })
 }

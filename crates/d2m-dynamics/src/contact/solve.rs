@@ -217,28 +217,26 @@ impl System {
     pub(crate) fn tolerance(&self, accuracy: Accuracy) -> f64 {
         // Of a light body that moves fast between heavy ones at rest no part may be left of these. Joints are solved far below that anyway.
         let speed = self.mean_speed();
-        let speed = if self.has_joints { speed } else { speed.min(self.speed_of_mass()) };
-        (accuracy.relative * speed).min(LOOSE * accuracy.precision).max(accuracy.precision)
-    }
-
-    /// The quadratic mean speed of all that moves, by mass.
-    fn speed_of_mass(&self) -> f64 {
-        let moved = |(body, _): &(&SolverBody, &f64)| body.inverse_mass > 0.0;
-        let bodies = self.bodies.iter().zip(&self.reach).filter(moved);
-        let part = |(body, reach): (&SolverBody, &f64)| {
-            let mass = 1.0 / body.inverse_mass;
-            [mass * body.velocity.surface_speed(*reach).powi(2), mass]
+        let speed = if self.has_joints {
+            speed
+        } else {
+            speed.min(self.mean_speed_by(|body| 1.0 / body.inverse_mass))
         };
-        let [square, mass] = bodies.map(part).fold([0.0; 2], |[x, y], [s, m]| [x + s, y + m]);
-        if mass > 0.0 { (square / mass).sqrt() } else { 0.0 }
+        (accuracy.relative * speed).min(LOOSE * accuracy.precision).max(accuracy.precision)
     }
 
     /// Of the moved bodies' surfaces where they touch, in the quadratic mean.
     pub(crate) fn mean_speed(&self) -> f64 {
-        let moved = |(body, _): &(&SolverBody, &f64)| body.inverse_mass > 0.0;
-        let square = |(body, reach): (&SolverBody, &f64)| body.velocity.surface_speed(*reach).powi(2);
-        let bodies = || self.bodies.iter().zip(&self.reach).filter(moved);
-        (bodies().map(square).sum::<f64>() / bodies().count().max(1) as f64).sqrt()
+        self.mean_speed_by(|_| 1.0)
+    }
+
+    fn mean_speed_by(&self, weight: impl Fn(&SolverBody) -> f64) -> f64 {
+        let bodies = self.bodies.iter().zip(&self.reach).filter(|(body, _)| body.inverse_mass > 0.0);
+        let part = |(body, reach): (&SolverBody, &f64)| {
+            [weight(body) * body.velocity.surface_speed(*reach).powi(2), weight(body)]
+        };
+        let [square, sum] = bodies.map(part).fold([0.0; 2], |[x, y], [s, w]| [x + s, y + w]);
+        if sum > 0.0 { (square / sum).sqrt() } else { 0.0 }
     }
 
     /// Goes on, unless that ends with a residual that is larger, and not within the tolerance either.
@@ -294,6 +292,9 @@ mod tests {
     use crate::contact::sweeps::tests::column;
     use glam::DMat3;
 
+    const EXACT: Accuracy =
+        Accuracy { precision: 1e-6, relative: 0.0, aim: 1e-3, company: Company::Few, slow: 1.0, still: None };
+
     /// Of a tall column sweeps leave something: a direct solution follows where that is more than twice what may be left.
     #[test]
     fn crowds_are_solved_directly_where_sweeps_fail() {
@@ -338,14 +339,7 @@ mod tests {
             inverse_inertia: DMat3::IDENTITY / mass,
             velocity: Velocity { linear: DVec3::X * speed, angular: DVec3::ZERO },
         };
-        let accuracy = Accuracy {
-            precision: 1e-6,
-            relative: 1.0 / 1024.0,
-            aim: 1e-3,
-            company: Company::Few,
-            slow: 1.0,
-            still: None,
-        };
+        let accuracy = Accuracy { relative: 1.0 / 1024.0, ..EXACT };
         let tolerance = |mass: f64, speed: f64| {
             let bodies = vec![body(mass, speed), body(1.0, 1.0)];
             System::new(bodies, &[upright([0, 1])], |i| i).tolerance(accuracy)
@@ -357,17 +351,9 @@ mod tests {
     #[test]
     fn aims_are_no_less_than_rounding() {
         let mut system = column(2, 0.0);
-        let accuracy = Accuracy {
-            precision: 1e-6,
-            relative: 0.0,
-            aim: 1e-3,
-            company: Company::Few,
-            slow: 1.0,
-            still: None,
-        };
-        assert_eq!(system.aim(accuracy), 1e-9);
+        assert_eq!(system.aim(EXACT), 1e-9);
         system.impulses[0][0] = 1e8;
-        assert!(system.aim(accuracy) > 1e8 * f64::EPSILON);
+        assert!(system.aim(EXACT) > 1e8 * f64::EPSILON);
     }
 
     /// What lies between two bodies of which one follows a motion may be taken along, by a few bodies; of a crowd sweeps come first.
@@ -382,16 +368,8 @@ mod tests {
         let rough =
             |pair| ContactPoint { material: Material { friction: 0.5, restitution: 0.0 }, ..upright(pair) };
         let system = System::new(bodies, &[rough([0, 1]), rough([1, 2])], |i| i);
-        let among = |company: Company| {
-            system.could_stick(Accuracy {
-                precision: 1e-7,
-                relative: 0.0,
-                aim: 1.0,
-                company,
-                slow: 1.0,
-                still: None,
-            })
-        };
+        let among =
+            |company: Company| system.could_stick(Accuracy { precision: 1e-7, aim: 1.0, company, ..EXACT });
         assert!(among(Company::Few) && !among(Company::Crowd) && !among(Company::Heap));
     }
 
@@ -412,14 +390,7 @@ mod tests {
         let mut system = System::new(bodies, &contacts, |i| i);
         system.impulses.fill([1e-9, 0.0, 0.0]);
         let among = |company: Company, slow: f64| {
-            system.could_stick(Accuracy {
-                precision: 1e-7,
-                relative: 0.0,
-                aim: 1.0,
-                company,
-                slow,
-                still: None,
-            })
+            system.could_stick(Accuracy { precision: 1e-7, aim: 1.0, company, slow, ..EXACT })
         };
         assert!(among(Company::Few, 2.0) && !among(Company::Few, 0.5));
         assert!(among(Company::Crowd, 8.0) && !among(Company::Crowd, 2.0) && !among(Company::Heap, 8.0));
