@@ -43,7 +43,7 @@ fn touches_begin_and_end_once() {
     );
 }
 
-/// What meets no more touches no more, wherever it is: of two static bodies nobody looks at the distance.
+/// Bodies that can no longer collide, as two that have become static, end their touch: their distance is not measured any more.
 #[test]
 fn what_meets_no_more_touches_no_more() {
     let changes: [fn(&mut Simulation, [BodyId; 2]); 3] = [
