@@ -11,7 +11,6 @@ use crate::momenta::Momenta;
 use crate::pull::{couples, pulls};
 use crate::rigid_body::RigidBody;
 use crate::solved_body::{body_at, moves, still};
-use crate::taut::of_closed_chains;
 use crate::turning::Pull;
 use crate::velocity::Velocity;
 use glam::{DMat3, DVec3};
@@ -163,7 +162,7 @@ impl Problem<'_> {
             rows().flat_map(|contact| [contact.a, contact.b]).map(|body| &self.states[self.place(body)]);
         let masses = ends.filter(|s| moves(s)).map(|s| s.mass);
         let (least, most) = masses.fold((f64::INFINITY, 0.0f64), |(lo, hi), m| (lo.min(m), hi.max(m)));
-        let is_open = || of_closed_chains(self.members, self.states, self.contacts, self.joints).is_none();
+        let is_open = || self.of_closed_chains().is_none();
         most > LIKE * least || self.has_chain() && is_open()
     }
 

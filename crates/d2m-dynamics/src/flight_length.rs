@@ -8,7 +8,6 @@ use crate::joint_rows::Ahead;
 use crate::pull::pulls;
 use crate::rigid_body::RigidBody;
 use crate::solved_body::moves;
-use crate::taut::{between_moved, locked, of_closed_chains};
 use crate::velocity::Velocity;
 use glam::DVec3;
 use std::borrow::Cow;
@@ -95,7 +94,10 @@ impl Problem<'_> {
         let mut end = if is_whole { end } else { moved().map(horizon).fold(end, f64::min) };
         let longest = end;
         let mut tried = self.attempt(now, end, Room::Kept);
-        if let Some(stopped) = self.stopped(&tried, [now, end]) {
+        // What motors drive moves, however short its flights are for that.
+        let mut joints = self.contacts.iter().filter_map(|contact| contact.joint());
+        let is_driven = joints.any(|number| self.joints[number].joint.motor.is_some());
+        if !is_driven && let Some(stopped) = self.stopped(&tried, [now, end]) {
             return stopped;
         }
         let is_of_joints = is_of_joints_alone(self.states, self.contacts);
@@ -103,8 +105,8 @@ impl Problem<'_> {
             Gained::of(self.states, &tried.system, self.options, [now, end - now])
         };
         // Flights of like bodies end as one where joints tear, of unlike ones sooner; and if that is not found they are halved further.
-        let limits =
-            if self.has_like_joints() { &[MOST_FLIGHTS][..] } else { &[MOST_OF_A_SNAP, MOST_FLIGHTS] };
+        let may_snap = !is_driven && !self.has_like_joints();
+        let limits = if may_snap { &[MOST_OF_A_SNAP, MOST_FLIGHTS][..] } else { &[MOST_FLIGHTS] };
         for &most_flights in limits {
             for _ in 0..MOST_HALVINGS {
                 let is_met = self.is_met(&tried);
@@ -128,6 +130,12 @@ impl Problem<'_> {
             if let Some(rigid) = self.snapped(&tried, [now, longest]) {
                 return rigid;
             }
+        }
+        if is_driven
+            && !self.is_met(&tried)
+            && let Some(stopped) = self.closed_as_one([now, longest])
+        {
+            return stopped;
         }
         let closing = self.closing();
         let rate = closing.map_or(0.0, |closing| closing.rate);
@@ -182,7 +190,12 @@ impl Problem<'_> {
         {
             return None;
         }
-        self.with_rigid(&of_closed_chains(self.members, self.states, self.contacts, self.joints)?, [now, end])
+        self.closed_as_one([now, end])
+    }
+
+    /// The bodies of closed chains as one.
+    fn closed_as_one(&self, span: [f64; 2]) -> Option<Attempt> {
+        self.with_rigid(&self.of_closed_chains()?, span)
     }
 
     /// Are joints met at the end of a flight, and do they go less than half round in it?
@@ -195,16 +208,14 @@ impl Problem<'_> {
         if self.has_like_joints() && !self.is_torn(tried) {
             return None;
         }
-        let Problem { members, states, contacts, joints, .. } = *self;
-        self.with_rigid(&between_moved(members, states, contacts, joints)?, span)
+        self.with_rigid(&self.between_moved()?, span)
     }
 
     /// The bodies of these joints as one; motors do nothing then.
     fn with_rigid(&self, numbers: &[usize], [now, end]: [f64; 2]) -> Option<Attempt> {
         let ahead =
             Ahead { length: end - now, step: self.options.step, forces: false, passed: 0.0, spent: 0.0 };
-        let (contacts, joints) =
-            locked(numbers, self.members, self.states, self.contacts, self.joints, ahead);
+        let (contacts, joints) = self.locked(numbers, ahead);
         let contacts: Vec<&ContactPoint> = contacts.iter().collect();
         let rigid = Problem { contacts: &contacts, joints: &joints, ..*self };
         let attempt = rigid.attempt_with(now, end, Room::Kept, Brakes::None);

@@ -6,72 +6,57 @@
 //! diverge in flights of any length. Bodies of such chains move as one until the end of the flight, which keeps momenta and takes the energy that
 //! they move against each other with, as an inelastic impact does.
 
+use crate::attempt::Problem;
 use crate::contact::ContactPoint;
 use crate::joint_rows::{Ahead, Joined};
-use crate::rigid_body::RigidBody;
 use crate::solved_body::moves;
 use crate::union::{join, root};
-use std::borrow::Cow;
 
-/// Of the contacts of an island, with its bodies: rows by which these joints hold their bodies as they are, and all joints as they are then.
-pub(crate) fn locked(
-    numbers: &[usize],
-    members: &[usize],
-    states: &[Cow<'_, RigidBody>],
-    contacts: &[&ContactPoint],
-    joints: &[Joined],
-    ahead: Ahead,
-) -> (Vec<ContactPoint>, Vec<Joined>) {
-    let place = |body: usize| members.binary_search(&body).unwrap_or_default();
-    let mut held = joints.to_vec();
-    let is_replaced = |contact: &&ContactPoint| contact.joint().is_some_and(|joint| numbers.contains(&joint));
-    let mut rows: Vec<ContactPoint> = contacts.iter().filter(|c| !is_replaced(c)).map(|c| **c).collect();
-    for &number in numbers {
-        let pair = joints[number].bodies.map(|body| &*states[place(body)]);
-        held[number] = joints[number].fixed_at(pair);
-        rows.extend(held[number].rows(number, pair, ahead));
+impl Problem<'_> {
+    /// Of the contacts, with the bodies: rows by which these joints hold their bodies as they are, and all joints as they are then.
+    pub(crate) fn locked(&self, numbers: &[usize], ahead: Ahead) -> (Vec<ContactPoint>, Vec<Joined>) {
+        let mut held = self.joints.to_vec();
+        let is_replaced = |c: &&&ContactPoint| c.joint().is_some_and(|joint| numbers.contains(&joint));
+        let mut rows: Vec<ContactPoint> =
+            self.contacts.iter().filter(|c| !is_replaced(c)).map(|c| **c).collect();
+        for &number in numbers {
+            let pair = self.joints[number].bodies.map(|body| &*self.states[self.place(body)]);
+            held[number] = self.joints[number].fixed_at(pair);
+            rows.extend(held[number].rows(number, pair, ahead));
+        }
+        (rows, held)
     }
-    (rows, held)
-}
 
-/// The numbers of the joints that hold these bodies to others, the world among them, in order. None: they close no chain.
-pub(crate) fn of_closed_chains(
-    members: &[usize],
-    states: &[Cow<'_, RigidBody>],
-    contacts: &[&ContactPoint],
-    joints: &[Joined],
-) -> Option<Vec<usize>> {
-    let place = |body: usize| members.binary_search(&body).unwrap_or_default();
-    let (numbers, ground) = (numbers(contacts, joints), states.len());
-    let mut parent: Vec<usize> = (0..=ground).collect();
-    let closes = numbers.iter().any(|&number| {
-        let [a, b] =
-            joints[number].bodies.map(|body| if moves(&states[place(body)]) { place(body) } else { ground });
-        let is_closed = root(&mut parent, a) == root(&mut parent, b);
-        join(&mut parent, a, b);
-        is_closed
-    });
-    closes.then_some(numbers)
-}
+    /// The numbers of the joints that hold the bodies to others, the world among them, in order. None: they close no chain.
+    pub(crate) fn of_closed_chains(&self) -> Option<Vec<usize>> {
+        let (numbers, ground) = (self.numbers(), self.states.len());
+        let mut parent: Vec<usize> = (0..=ground).collect();
+        let closes = numbers.iter().any(|&number| {
+            let [a, b] = self.joints[number].bodies.map(|body| {
+                let place = self.place(body);
+                if moves(&self.states[place]) { place } else { ground }
+            });
+            let is_closed = root(&mut parent, a) == root(&mut parent, b);
+            join(&mut parent, a, b);
+            is_closed
+        });
+        closes.then_some(numbers)
+    }
 
-/// Of the joints that hold two bodies which move, in order; about others the chain may turn. None: there is none, or a motor drives one.
-pub(crate) fn between_moved(
-    members: &[usize],
-    states: &[Cow<'_, RigidBody>],
-    contacts: &[&ContactPoint],
-    joints: &[Joined],
-) -> Option<Vec<usize>> {
-    let mut numbers = numbers(contacts, joints);
-    let is_moved = |body: usize| moves(&states[members.binary_search(&body).unwrap_or_default()]);
-    numbers.retain(|&number| joints[number].bodies.into_iter().all(is_moved));
-    let is_driven = numbers.iter().any(|&number| joints[number].joint.motor.is_some());
-    (!is_driven && !numbers.is_empty()).then_some(numbers)
-}
+    /// Of the joints that hold two bodies which move, in order; about others the chain may turn. None: there is none, or a motor drives one.
+    pub(crate) fn between_moved(&self) -> Option<Vec<usize>> {
+        let mut numbers = self.numbers();
+        let is_moved = |body: usize| moves(&self.states[self.place(body)]);
+        numbers.retain(|&number| self.joints[number].bodies.into_iter().all(is_moved));
+        let is_driven = numbers.iter().any(|&number| self.joints[number].joint.motor.is_some());
+        (!is_driven && !numbers.is_empty()).then_some(numbers)
+    }
 
-/// The numbers of the joints of two bodies among these contacts, in order.
-fn numbers(contacts: &[&ContactPoint], joints: &[Joined]) -> Vec<usize> {
-    let mut numbers: Vec<usize> = contacts.iter().filter_map(|contact| contact.joint()).collect();
-    numbers.dedup();
-    numbers.retain(|&number| joints[number].is_between_bodies());
-    numbers
+    /// The numbers of the joints of two bodies among the contacts, in order.
+    fn numbers(&self) -> Vec<usize> {
+        let mut numbers: Vec<usize> = self.contacts.iter().filter_map(|contact| contact.joint()).collect();
+        numbers.dedup();
+        numbers.retain(|&number| self.joints[number].is_between_bodies());
+        numbers
+    }
 }
