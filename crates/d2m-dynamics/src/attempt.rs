@@ -155,23 +155,26 @@ impl Attempt {
 }
 
 impl Problem<'_> {
-    /// Do joints connect bodies of unlike masses, or hold one between others? Closed chains of like ones stop where they are pulled taut.
+    /// Do joints connect bodies of unlike masses, or hold one between others?
     fn may_be_braked(&self) -> bool {
         let rows = || self.contacts.iter().filter(|contact| contact.row.is_some());
         let ends =
             rows().flat_map(|contact| [contact.a, contact.b]).map(|body| &self.states[self.place(body)]);
         let masses = ends.filter(|s| moves(s)).map(|s| s.mass);
         let (least, most) = masses.fold((f64::INFINITY, 0.0f64), |(lo, hi), m| (lo.min(m), hi.max(m)));
-        let is_open = || self.of_closed_chains().is_none();
-        most > LIKE * least || self.has_chain() && is_open()
+        most > LIKE * least || self.has_chain()
+    }
+
+    /// The places of the bodies that motors drive against each other.
+    pub(crate) fn driven(&self) -> impl Iterator<Item = usize> {
+        let joints = self.numbers().into_iter().map(|number| &self.joints[number]);
+        let driven = joints.filter(|joined| joined.joint.motor.is_some());
+        driven.flat_map(|joined| joined.bodies).map(|body| self.place(body))
     }
 
     /// Does more than one joint hold a body?
     fn has_chain(&self) -> bool {
-        let mut numbers: Vec<usize> = self.contacts.iter().filter_map(|contact| contact.joint()).collect();
-        numbers.dedup();
-        let joints = numbers.into_iter().map(|number| &self.joints[number]).filter(|j| j.is_between_bodies());
-        let ends = joints.flat_map(|joined| joined.bodies);
+        let ends = self.numbers().into_iter().flat_map(|number| self.joints[number].bodies);
         let mut held: Vec<usize> = ends.filter(|&body| moves(&self.states[self.place(body)])).collect();
         held.sort_unstable();
         held.windows(2).any(|two| two[0] == two[1])
@@ -181,10 +184,15 @@ impl Problem<'_> {
         self.members.binary_search(&body).unwrap_or_default()
     }
 
-    /// With brakes on what oscillates fast.
+    /// With brakes on what oscillates fast; in closed chains, as most mechanisms are, only where flights would not meet their joints without.
     pub(crate) fn attempt(&self, now: f64, end: f64, room: Room) -> Attempt {
-        let brakes = if self.may_be_braked() { Brakes::OfOscillations } else { Brakes::None };
-        self.attempt_with(now, end, room, brakes)
+        let attempt = |brakes: Brakes| self.attempt_with(now, end, room, brakes);
+        if !self.may_be_braked() {
+            return attempt(Brakes::None);
+        }
+        let is_closed = self.of_closed_chains().is_some();
+        let free = is_closed.then(|| attempt(Brakes::None)).filter(|free| self.is_met(free));
+        free.unwrap_or_else(|| attempt(Brakes::OfOscillations))
     }
 
     pub(crate) fn attempt_with(&self, now: f64, end: f64, room: Room, brakes: Brakes) -> Attempt {
@@ -209,7 +217,9 @@ impl Problem<'_> {
         let relative = if room == Room::Shared { RELATIVE * SHARED } else { RELATIVE };
         let mut accuracy = Accuracy { precision, relative, aim: AIM, slow, company, still: None };
         let pushing: Vec<f64> = rows.iter().map(|row| row.pushing).collect();
-        let spins: Vec<DVec3> = free.iter().map(|body| body.velocity.angular).collect();
+        // What a motor drives does not oscillate.
+        let mut spins: Vec<Option<DVec3>> = free.iter().map(|body| Some(body.velocity.angular)).collect();
+        self.driven().for_each(|driven| spins[driven] = None);
         let velocities = |c: &ContactPoint| [c.a, c.b].map(|body| free[place(body)].velocity);
         let in_turn = |c: &ContactPoint| in_common_turn(c, velocities(c), span.remaining);
         let running: Vec<[f64; 2]> = contacts.iter().map(in_turn).collect();

@@ -94,10 +94,7 @@ impl Problem<'_> {
         let mut end = if is_whole { end } else { moved().map(horizon).fold(end, f64::min) };
         let longest = end;
         let mut tried = self.attempt(now, end, Room::Kept);
-        // What motors drive moves, however short its flights are for that.
-        let mut joints = self.contacts.iter().filter_map(|contact| contact.joint());
-        let is_driven = joints.any(|number| self.joints[number].joint.motor.is_some());
-        if !is_driven && let Some(stopped) = self.stopped(&tried, [now, end]) {
+        if let Some(stopped) = self.stopped(&tried, [now, end]) {
             return stopped;
         }
         let is_of_joints = is_of_joints_alone(self.states, self.contacts);
@@ -105,8 +102,8 @@ impl Problem<'_> {
             Gained::of(self.states, &tried.system, self.options, [now, end - now])
         };
         // Flights of like bodies end as one where joints tear, of unlike ones sooner; and if that is not found they are halved further.
-        let may_snap = !is_driven && !self.has_like_joints();
-        let limits = if may_snap { &[MOST_OF_A_SNAP, MOST_FLIGHTS][..] } else { &[MOST_FLIGHTS] };
+        let limits =
+            if self.has_like_joints() { &[MOST_FLIGHTS][..] } else { &[MOST_OF_A_SNAP, MOST_FLIGHTS] };
         for &most_flights in limits {
             for _ in 0..MOST_HALVINGS {
                 let is_met = self.is_met(&tried);
@@ -130,12 +127,6 @@ impl Problem<'_> {
             if let Some(rigid) = self.snapped(&tried, [now, longest]) {
                 return rigid;
             }
-        }
-        if is_driven
-            && !self.is_met(&tried)
-            && let Some(stopped) = self.closed_as_one([now, longest])
-        {
-            return stopped;
         }
         let closing = self.closing();
         let rate = closing.map_or(0.0, |closing| closing.rate);
@@ -199,12 +190,16 @@ impl Problem<'_> {
     }
 
     /// Are joints met at the end of a flight, and do they go less than half round in it?
-    fn is_met(&self, attempt: &Attempt) -> bool {
+    pub(crate) fn is_met(&self, attempt: &Attempt) -> bool {
         attempt.found.missed <= OFF_JOINT * self.speed() && !self.turns_over(attempt)
     }
 
-    /// Bodies that move, and that joints without motors connect, as one where no flight is short enough for their joints.
+    /// Closed chains that motors drive, or bodies that move and that joints without motors connect, as one where no flight is short enough for their joints.
     fn snapped(&self, tried: &Attempt, span: [f64; 2]) -> Option<Attempt> {
+        let is_driven = self.driven().next().is_some();
+        if let Some(stopped) = self.closed_as_one(span).filter(|_| is_driven) {
+            return Some(stopped);
+        }
         if self.has_like_joints() && !self.is_torn(tried) {
             return None;
         }
@@ -224,7 +219,8 @@ impl Problem<'_> {
 
     /// Do joints pull bodies to and fro faster than flights could follow?
     fn is_taut(&self, attempt: &Attempt) -> bool {
-        let spins: Vec<DVec3> = attempt.system.bodies.iter().map(|body| body.velocity.angular).collect();
+        let spins: Vec<Option<DVec3>> =
+            attempt.system.bodies.iter().map(|body| Some(body.velocity.angular)).collect();
         let length = attempt.span.remaining;
         let found = &attempt.found.contacts;
         let pulls = pulls(&[], self.states, &spins, found, length, |body| self.place(body));

@@ -51,11 +51,11 @@ fn turned_back(arm: DVec3, impulse: DVec3) -> DMat3 {
 }
 
 /// The pulls on the bodies in flights of a length with the impulses of these contacts, where they are stronger than those `before`.
-/// `free`: the spins without impulses.
+/// `free`: the spins without impulses, of those that may be braked.
 pub(crate) fn pulls(
     before: &[Option<Pull>],
     states: &[Cow<'_, RigidBody>],
-    free: &[DVec3],
+    free: &[Option<DVec3>],
     contacts: &[ContactPoint],
     length: f64,
     place: impl Fn(usize) -> usize,
@@ -72,7 +72,8 @@ pub(crate) fn pulls(
         let squares = states[k].inverse_inertia_at(states[k].orientation) * sum * length;
         let speed = squares.x_axis.x + squares.y_axis.y + squares.z_axis.z;
         let stiffness = || sum * ((BRAKING - BRAKING * FAST / speed) * length);
-        let pull = (speed > FAST).then(|| Pull { speed, stiffness: stiffness(), free: free[k] });
+        let pull = free[k].filter(|_| speed > FAST);
+        let pull = pull.map(|free| Pull { speed, stiffness: stiffness(), free });
         let known = before.get(k).copied().flatten();
         if known.is_some_and(|known| known.speed >= speed) { known } else { pull.or(known) }
     };

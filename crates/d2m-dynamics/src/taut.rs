@@ -53,7 +53,7 @@ impl Problem<'_> {
     }
 
     /// The numbers of the joints of two bodies among the contacts, in order.
-    fn numbers(&self) -> Vec<usize> {
+    pub(crate) fn numbers(&self) -> Vec<usize> {
         let mut numbers: Vec<usize> = self.contacts.iter().filter_map(|contact| contact.joint()).collect();
         numbers.dedup();
         numbers.retain(|&number| self.joints[number].is_between_bodies());

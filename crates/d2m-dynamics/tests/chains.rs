@@ -1,7 +1,7 @@
 //! Joints that close chains: where these have no way to move they stand, where they have one they go it.
 
 use d2m_bvh::MeshTree;
-use d2m_dynamics::{Body, BodyId, Joint, JointKind, Mass, Simulation, SimulationOptions};
+use d2m_dynamics::{Body, BodyId, Joint, JointKind, Mass, Motor, MotorTarget, Simulation, SimulationOptions};
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
@@ -156,4 +156,84 @@ fn a_ring_that_whips_round_gains_no_energy() {
     }
     assert!(motion > 30.0, "{motion}");
     assert!(most < 0.03 * motion, "{most} of {motion}");
+}
+
+/// A crank, a rod and a rocker beside each other, so that their hinges bear moments across the axis; the rocker is a thousand times as heavy. A motor turns
+/// the crank from rest to its speed within a step, and as exactly as in one plane.
+#[test]
+fn linkages_beside_each_other_follow_their_motor() {
+    for beside in [0.0, 0.05] {
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        let (crank, ground) = (DVec3::new(0.7_f64.cos(), 0.7_f64.sin(), 0.0) * 0.2, DVec3::X * 0.9);
+        // Where the rod of 0.8 and the rocker of 0.6 meet.
+        let way = ground - crank;
+        let along = (0.8 * 0.8 - 0.6 * 0.6 + way.length_squared()) / (2.0 * way.length());
+        let unit = way.normalize();
+        let meet = crank + unit * along + DVec3::new(-unit.y, unit.x, 0.0) * (0.64 - along * along).sqrt();
+        let mut part = |from: DVec3, to: DVec3, z: f64, density: f64| {
+            let shape = format!("box?x={}&y=0.02&z=0.02", 0.45 * (to - from).length());
+            let tree = Arc::new(MeshTree::new(d2m_shapes::mesh(&shape).unwrap()));
+            let body = Body::new("", tree).with_mass(Mass::Density(density));
+            let body = body.with_position((from + to) * 0.5 + DVec3::Z * z);
+            let turn = DQuat::from_rotation_arc(DVec3::X, (to - from).normalize());
+            simulation.add(&body.with_orientation(turn)).unwrap()
+        };
+        let first = part(DVec3::ZERO, crank, 0.0, 1e3);
+        let rod = part(crank, meet, beside, 1e3);
+        let rocker = part(meet, ground, 2.0 * beside, 1e6);
+        let hinge = |a: BodyId, b: Option<BodyId>, at: DVec3| {
+            Joint::new(JointKind::Revolute, a, b, at).with_axis(DVec3::Z)
+        };
+        let mut motor = Motor::new(MotorTarget::Velocity(-50.0));
+        motor.most = 1e9;
+        let driven = simulation.add_joint(&hinge(first, None, DVec3::ZERO).with_motor(motor)).unwrap();
+        for joint in
+            [hinge(first, Some(rod), crank), hinge(rod, Some(rocker), meet), hinge(rocker, None, ground)]
+        {
+            simulation.add_joint(&joint).unwrap();
+        }
+        simulation.ignore(first, rocker);
+        while simulation.time() < 0.1 {
+            simulation.step().unwrap();
+        }
+        let off = simulation.joint_value(driven) + 50.0 * simulation.time();
+        assert!(off.abs() < 1e-5, "{beside}: {off}");
+    }
+}
+
+/// An arm of six links, each with a motor that goes to an angle of one radian, and a load 10⁵ times as heavy as a link, needs no more flights than with a light one.
+#[test]
+fn arms_carry_heavy_loads_in_as_many_flights() {
+    let flights = |load: f64| {
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.14&y=0.02&z=0.02").unwrap()));
+        let mut motor = Motor::new(MotorTarget::Position(1.0));
+        motor.most = 1e12;
+        let (mut ids, mut joints) = (Vec::<BodyId>::new(), Vec::new());
+        for k in 0..6 {
+            let at = DVec3::new(0.3, 0.0, 0.05) * f64::from(k);
+            let mass = Mass::Total(if k == 5 { load } else { 1.0 });
+            let link = Body::new(format!("{k}"), Arc::clone(&tree)).with_mass(mass);
+            let link = simulation.add(&link.with_position(at + DVec3::X * 0.15)).unwrap();
+            for &other in &ids {
+                simulation.ignore(link, other);
+            }
+            let (a, b) = ids.last().map_or((link, None), |&last| (last, Some(link)));
+            let axis = if k % 2 == 0 { DVec3::Z } else { DVec3::Y };
+            joints.push(Joint::new(JointKind::Revolute, a, b, at).with_axis(axis).with_motor(motor));
+            ids.push(link);
+        }
+        let joints: Vec<usize> = joints.iter().map(|joint| simulation.add_joint(joint).unwrap()).collect();
+        let mut flights = 0;
+        while simulation.time() < 0.5 {
+            flights += simulation.step().unwrap().segments.len();
+        }
+        for joint in joints {
+            let value = simulation.joint_value(joint);
+            assert!((value.abs() - 1.0).abs() < 1e-3, "{load:e}: {value}");
+        }
+        flights
+    };
+    let [light, heavy] = [1e2, 1e5].map(flights);
+    assert!(heavy <= light + light / 4, "{heavy} {light}");
 }
