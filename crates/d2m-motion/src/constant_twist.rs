@@ -227,11 +227,17 @@ impl ConstantTwist {
         (x, y, z) == (0.0, 0.0, 0.0)
     }
 
+    /// Upper bound of the radians that it turns in a time, also where squares of its rate are lost to underflow; infinite where that is no
+    /// number.
+    fn bound_turn(&self, time: f64) -> f64 {
+        up(length_up(self.angular_velocity) * time.abs()) + f64::MIN_POSITIVE
+    }
+
     /// In plain floating point: `u(96 + 8|ω||t − t_ref|)` for the rotation, `4u(|x0| + |v(t − t_ref)|)` for the
     /// position, u = 2⁻⁵³ (docs/theory/features.md, "Any C² motion"). `None` where that is not proven.
     fn plain_state(&self, t: f64) -> Option<CertifiedState> {
         let s = t - self.reference_time;
-        let angle = self.angular_velocity.length() * s.abs();
+        let angle = self.bound_turn(s);
         // Also NaN is not proven.
         let start = from_quat_rounded(self.orientation).filter(|_| angle < 0.5 * LARGEST_ANGLE)?;
         let travelled = self.linear_velocity * s;
@@ -267,7 +273,7 @@ const MANY_TURNS: f64 = 1_073_741_824.0;
 impl RigidMotion for ConstantTwist {
     fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
         let s = t - self.reference_time;
-        let angle = self.angular_velocity.length() * s.abs();
+        let angle = self.bound_turn(s);
         let rotation = if angle > FEW_TURNS && angle < MANY_TURNS {
             self.rotation_dd(t).to_quat()
         } else {
@@ -283,7 +289,7 @@ impl RigidMotion for ConstantTwist {
         let s = t - Interval::point(self.reference_time);
         let translation = IntervalVec3::point(self.linear_velocity) * s + self.position;
         // (No times at all: a NaN, which is not little.)
-        let turn = t.rad() * self.angular_velocity.length();
+        let turn = self.bound_turn(t.rad());
         let plain = if turn <= LITTLE { self.plain_state(t.mid()) } else { None };
         let rotation = if let Some(state) = plain {
             around(&state.rotation, (state.rotation_radius + turn) * SUM_ROUNDING)
@@ -340,7 +346,7 @@ impl RigidMotion for ConstantTwist {
         let travelled = self.linear_velocity * (t.mid() - self.reference_time);
         let size = length_up(self.position) + length_up(travelled);
         let gone = times_up(length_up(self.linear_velocity), half);
-        let turn = times_up(length_up(self.angular_velocity), half);
+        let turn = self.bound_turn(half);
         let rotation_radius = if self.angular_velocity == DVec3::ZERO && self.has_no_turn() {
             0.0
         } else {

@@ -2,7 +2,7 @@ use crate::double_double_trig::sin_cos_double;
 use crate::sin_cos::{LARGEST_ANGLE, sin_cos, sin_cos_two};
 use crate::{ConstantTwist, Keyframes, MotionError, Pose, RigidMotion, ScrewMotion, Span, Twist};
 use core::ops::{Add, Mul, Sub};
-use d2m_interval::Interval;
+use d2m_interval::{Interval, IntervalVec3};
 use d2m_lanes::{DoubleDouble, F64x2};
 use d2m_testing::{Draw, Random};
 use glam::{DQuat, DVec3};
@@ -76,6 +76,31 @@ fn rotations_in_double_double_are_orthogonal() {
             let rest = products.map(|sum| sum.hi);
             assert!(rest.into_iter().all(|x| x.abs() < 2_f64.powi(-94)), "{i}: {rest:?}");
         }
+    }
+}
+
+/// Squares of rates below 1e-162 are lost to underflow, the turns of long times are not: of no angle nothing is said, and of one that is too
+/// large to be known that it is.
+#[test]
+fn a_slow_turn_over_a_long_time_is_enclosed() {
+    for rate in [1e-150, 1e-170, 1e-200, 1e-300] {
+        let motion = ConstantTwist::REST.with_angular_velocity(DVec3::new(0.6, 0.0, 0.8) * rate);
+        let whole = Interval::new(-1.0 / rate, 1.0 / rate);
+        let over = [motion.enclose_pose(whole), motion.enclose_kinematics(whole).to_pose()];
+        for k in -8..=8 {
+            let place = motion.pose_and_twist(f64::from(k) / (8.0 * rate)).0.rotation * DVec3::Y;
+            for enclosed in over {
+                let seen = enclosed.rotation.mul_vec(IntervalVec3::point(DVec3::Y));
+                let seen = [seen.x, seen.y, seen.z].map(|x| x + Interval::new(-1e-14, 1e-14));
+                assert!((0..3).all(|i| seen[i].contains(place[i])), "{rate:e} {k}: {place} {seen:?}");
+            }
+        }
+        let late = 1e20 / rate.max(1e-280);
+        let state = motion.enclose_state(late);
+        assert!(state.rotation.is_finite() && state.rotation_radius >= 1.0 || rate < 1e-280, "{state:?}");
+        assert!(
+            motion.enclose_pose(Interval::point(late)).rotation.rows()[0].x.contains(0.0) || rate < 1e-280
+        );
     }
 }
 

@@ -80,7 +80,7 @@ impl RelativeState {
     }
 
     /// Of the states of A and B at one time, and of what encloses their rates within `h` of it: jets hold there. The states may be about any
-    /// point that both share, and in any unit of time that the rates share.
+    /// point that both share, and in any unit of time near `h` that the rates share: products of rates in others may be lost to underflow.
     ///
     /// ```
     /// use d2m_interval::Interval;

@@ -207,13 +207,14 @@ impl RelativeMotion {
         let size = g.length();
         let pad = 64.0 * UNIT * (size + self.bounds.speed * self.duration);
         let radius = distance * UP + pad;
-        if !square.is_normal() {
+        let across = g.cross(u).length();
+        if !(square.is_normal() && across.is_finite()) {
             // At rest, or out of the range of squares.
             let apart = u == DVec3::ZERO && size > radius;
             return (!apart).then_some(OffsetRange { from: 0.0, to: self.duration });
         }
         let speed = square.sqrt();
-        let nearest = g.cross(u).length() / speed;
+        let nearest = across / speed;
         if nearest > radius {
             return None;
         }

@@ -330,3 +330,17 @@ fn rotations_are_the_same_in_every_unit_of_time() {
         assert_eq!(turned, same, "2^{k}");
     }
 }
+
+/// Where the square of a distance times a speed is no number, times near each other are not left out.
+#[test]
+fn times_within_a_distance_are_found_in_any_unit() {
+    let passing = ConstantTwist::REST.with_position(DVec3::new(-4.0, 0.25, 0.0));
+    let passing = passing.with_linear_velocity(DVec3::X * 8.0);
+    for unit in [1e-200, 1e-100, 1.0, 1e76, 1e100, 1e150, 1e200] {
+        let large = passing.with_position(passing.position() * unit);
+        let large = large.with_linear_velocity(passing.linear_velocity() * unit);
+        let relative = RelativeMotion::new(&large, &ConstantTwist::REST, 0.0, 1.0);
+        let times = relative.times_within(0.5 * unit).expect("they pass at 0.25");
+        assert!(times.from <= 0.45 && times.to >= 0.55, "{unit:e}: {times:?}");
+    }
+}
