@@ -5,11 +5,10 @@
 //! On each triangle a point wanders whose weights are quadratic in time: their difference is a polynomial of the fourth degree, and no
 //! longer than the longest of its Bernstein coefficients. docs/theory/questions.md, "Staying in contact".
 
-use super::MovingTriangle;
+use super::Middle;
 use crate::{TriangleDistance, closest_weights, triangle_distance};
-use d2m_interval::Interval;
-use d2m_lanes::{UP, power_of_two, power_of_two_below};
-use d2m_motion::{Ball, CertifiedState, Kinematics, RelativeState, length};
+use d2m_lanes::{UP, power_of_two};
+use d2m_motion::{CertifiedState, RelativeState, length};
 use glam::DVec3;
 
 /// A control point takes fewer than 28 operations in a row, on terms of two bodies whose weights, in magnitudes, sum up to 1, 1 and 2: with √3 for
@@ -46,41 +45,15 @@ pub(super) struct CurvedPair {
     error: f64,
 }
 
-/// The parts of a state and of rates with a unit of time that is `unit` of the one they have: exact, but for underflow.
-fn in_time(state: &CertifiedState, over: &Kinematics, unit: f64) -> (CertifiedState, Kinematics) {
-    let scaled = |ball: Ball, by: f64| Ball::new(ball.center * by, ball.radius * by);
-    let state = CertifiedState {
-        linear: state.linear * unit,
-        angular: state.angular * unit,
-        linear_radius: state.linear_radius * unit,
-        angular_radius: state.angular_radius * unit,
-        ..*state
-    };
-    let linear_rate = scaled(scaled(over.linear_rate, unit), unit);
-    let angular_rate = scaled(scaled(over.angular_rate, unit), unit);
-    (state, Kinematics { linear_rate, angular_rate, ..*over })
-}
-
 impl CurvedPair {
     /// The span has a length, and no joint of the motions inside of it. Where the motions' enclosures know nothing the error is infinite.
-    pub(super) fn new(triangles: &[MovingTriangle<'_>; 2], from: f64, to: f64) -> Self {
-        let middle = (from + 0.5 * (to - from)).clamp(from, to);
-        let half = (to - middle).max(middle - from) * UP;
-        // A power of two, so that a half is from one to two of these.
-        let unit = power_of_two_below(half);
-        let h = half / unit;
-        let origin = triangles[1].motion.pose_and_twist(middle).0.translation;
-        let span = Interval::new(from, to);
-        let [(a, over_a), (b, over_b)] = triangles.map(|triangle| {
-            let state = triangle.motion.enclose_state_about(middle, origin);
-            in_time(&state, &triangle.motion.enclose_kinematics(span), unit)
-        });
-        let given = [0, 1].map(|k| triangles[k].corners);
+    pub(super) fn new(given: &[[DVec3; 3]; 2], middle: &Middle) -> Self {
+        let ([a, b], [over_a, over_b], h) = (&middle.states, &middle.rates, middle.half);
         let arms = [given[0].map(|p| p - a.at), given[1].map(|p| p - b.at)];
         let [radius, extent] = arms.map(|arms| arms.map(length).into_iter().fold(0.0, f64::max) * UP);
         // Places of B are from its reference point here.
-        let b = CertifiedState { at: DVec3::ZERO, ..b };
-        let relative = RelativeState::of_states([&a, &b], [&over_a, &over_b], h);
+        let b = CertifiedState { at: DVec3::ZERO, ..*b };
+        let relative = RelativeState::of_states([a, &b], [over_a, over_b], h);
         let turn = relative.turn_b().max(relative.bound_turn_speed(1.0));
         let remainder = relative.remainder(radius, extent).bound(h);
         let error = if turn <= MOST_TURN { (remainder + LOST) * LOST_PART } else { f64::INFINITY };
@@ -190,6 +163,7 @@ fn quadratics([begin, middle, end]: &[[f64; 3]; 3]) -> [Quadratic<f64>; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::MovingTriangle;
     use d2m_motion::{Chain, Composed, ConstantTwist, Joint, JointKind, JointValue, RigidMotion};
     use d2m_testing::{Draw, KnuthRandom};
 
@@ -281,7 +255,7 @@ mod tests {
             let triangles = [MovingTriangle { corners, motion: &a }, MovingTriangle { corners, motion: &b }];
             let (from, long) = (0.3 * second, [0.01, 0.1][round % 2] * second);
             let to = from + long;
-            let pair = CurvedPair::new(&triangles, from, to);
+            let pair = CurvedPair::new(&[corners; 2], &Middle::of(&triangles, from, to));
             // Of the third order in the length.
             let half = 0.5 * long / second;
             assert!(pair.error < 1000.0 * half * half * half, "round {round}: {}", pair.error);

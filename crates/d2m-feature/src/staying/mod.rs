@@ -4,7 +4,9 @@ mod curved;
 mod straight;
 
 use curved::CurvedPair;
-use d2m_motion::RigidMotion;
+use d2m_interval::Interval;
+use d2m_lanes::{UP, power_of_two_below};
+use d2m_motion::{Ball, CertifiedState, Kinematics, RigidMotion};
 use glam::DVec3;
 use straight::StraightPair;
 
@@ -31,8 +33,47 @@ impl core::fmt::Debug for MovingTriangle<'_> {
     }
 }
 
+/// Both bodies in the middle of a span of time, about the place of B there, and their rates over all of it.
+///
+/// The unit of time is a power of two near half of the span, so that squares of slow motions over long times, times small lengths, are not
+/// lost to underflow. Scaling is exact; what underflow takes there is less than the least normal number, and of what it takes of an angular
+/// velocity, times a length, the rounding of that length is far more.
+struct Middle {
+    states: [CertifiedState; 2],
+    rates: [Kinematics; 2],
+    /// Half of the span: from one to two, or less where that is below the least normal number.
+    half: f64,
+}
+
+impl Middle {
+    fn of(triangles: &[MovingTriangle<'_>; 2], from: f64, to: f64) -> Self {
+        let middle = (from + 0.5 * (to - from)).clamp(from, to);
+        let half = (to - middle).max(middle - from) * UP;
+        let unit = power_of_two_below(half);
+        let origin = triangles[1].motion.pose_and_twist(middle).0.translation;
+        let span = Interval::new(from, to);
+        let scaled = |ball: Ball| Ball::new(ball.center * unit * unit, ball.radius * unit * unit);
+        let states = triangles.map(|triangle| {
+            let state = triangle.motion.enclose_state_about(middle, origin);
+            CertifiedState {
+                linear: state.linear * unit,
+                angular: state.angular * unit,
+                linear_radius: state.linear_radius * unit,
+                angular_radius: state.angular_radius * unit,
+                ..state
+            }
+        });
+        let rates = triangles.map(|triangle| {
+            let over = triangle.motion.enclose_kinematics(span);
+            let (linear_rate, angular_rate) = (scaled(over.linear_rate), scaled(over.angular_rate));
+            Kinematics { linear_rate, angular_rate, ..over }
+        });
+        Self { states, rates, half: half / unit }
+    }
+}
+
 /// Proof that two triangles are within `level` of each other at every time from `from` to `to`, without a joint of their motions between;
-/// false proves nothing. O(1): halve a span that is not proven.
+/// false proves nothing, also of a span that ends before it begins. O(1): halve a span that is not proven.
 ///
 /// An edge that passes through a triangle, two material points or a vertex above a face are shown to stay near, by states at the middle of the
 /// span and bounds on accelerations; then points that wander on both triangles (docs/theory/questions.md, "Staying in contact").
@@ -47,6 +88,74 @@ impl core::fmt::Debug for MovingTriangle<'_> {
 /// assert!(stay_within(&triangles, 0.0, 1.0, 0.1001) && !stay_within(&triangles, 0.0, 1.0, 0.0999));
 /// ```
 pub fn stay_within(triangles: &[MovingTriangle<'_>; 2], from: f64, to: f64, level: f64) -> bool {
-    StraightPair::new(triangles, from, to).stay_within(level)
-        || to > from && CurvedPair::new(triangles, from, to).stay_within(level)
+    // What is no number is no span and no level.
+    if !(from <= to && level >= 0.0) {
+        return false;
+    }
+    let middle = Middle::of(triangles, from, to);
+    let corners = triangles.map(|triangle| triangle.corners);
+    StraightPair::new(&corners, &middle).stay_within(level)
+        || to > from && CurvedPair::new(&corners, &middle).stay_within(level)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use d2m_lanes::power_of_two;
+    use d2m_motion::ConstantTwist;
+    use d2m_testing::{Draw, KnuthRandom};
+
+    /// Exact scalings of lengths and of times change no claim: also where the square of a rate of turning, times a length, is no number.
+    #[test]
+    fn claims_are_the_same_in_any_unit_of_length_and_of_time() {
+        let mut random = KnuthRandom(616);
+        let mut claims = 0;
+        for round in 0..300 {
+            let mut body = |up: f64| {
+                let corners = [(); 3].map(|()| random.vector() * DVec3::new(1.0, 1.0, 0.1) + DVec3::Z * up);
+                (corners, random.vector() * 0.1, random.vector() * [0.1, 1.0][round % 2])
+            };
+            let bodies = [body(0.0), body(0.3)];
+            let found = |length: i32, time: i32| {
+                let (meter, second) = (power_of_two(length), power_of_two(time));
+                let motions = bodies.map(|(_, linear, angular)| {
+                    ConstantTwist::REST
+                        .with_linear_velocity(linear * (meter / second))
+                        .with_angular_velocity(angular / second)
+                });
+                let triangles = [0, 1]
+                    .map(|k| MovingTriangle { corners: bodies[k].0.map(|p| p * meter), motion: &motions[k] });
+                [0.3, 0.5, 0.8].map(|level| stay_within(&triangles, 0.0, second, level * meter))
+            };
+            let usual = found(0, 0);
+            claims += usual.into_iter().map(u32::from).sum::<u32>();
+            for (length, time) in [(0, 900), (0, -900), (-130, 480), (-100, 490), (150, -600), (100, 500)] {
+                assert_eq!(found(length, time), usual, "round {round}: {length} {time}");
+            }
+        }
+        assert!(claims > 100, "{claims}");
+    }
+
+    /// Triangles that cross are within no distance below zero, and nothing is known of times in reverse order, or that are none.
+    #[test]
+    fn what_is_no_span_or_no_level_is_not_proven() {
+        let floor = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Y * 4.0];
+        let upright = [DVec3::new(1.0, 1.0, -1.0), DVec3::ONE, DVec3::new(3.0, 3.0, 1.0)];
+        let triangles =
+            [floor, upright].map(|corners| MovingTriangle { corners, motion: &ConstantTwist::REST });
+        assert!(stay_within(&triangles, 0.0, 1.0, 0.0) && stay_within(&triangles, 1.0, 1.0, 0.0));
+        let [none, never] = [f64::NAN, f64::INFINITY];
+        for (from, to, level) in [
+            (0.0, 1.0, -1.0),
+            (0.0, 1.0, none),
+            (1.0, 0.0, 1.0),
+            (none, 1.0, 1.0),
+            (0.0, none, 1.0),
+            (0.0, never, 1.0),
+            (-never, never, 1.0),
+            (-f64::MAX, f64::MAX, 1.0),
+        ] {
+            assert!(!stay_within(&triangles, from, to, level), "{from} {to} {level}");
+        }
+    }
 }
