@@ -101,10 +101,9 @@ impl Span {
         (from < middle && middle < to).then(|| &**self.halves.get_or_init(halves))
     }
 
-    /// Are the parts proven to be apart all the time? In intervals, from both ends and K L²/2.
+    /// Are the parts proven to be apart all the time? In intervals, from both ends and K/2.
     fn is_proven(&self, separation: &Separation, parts: [Part<'_>; 2]) -> bool {
-        let length = Interval::point(self.time.to) - self.time.from;
-        let bend = || (length.sqr() * 0.5 * self.rates.curvature(separation, parts)).hi();
+        let bend = || 0.5 * self.rates.curvature(separation, parts);
         let bend = if self.time.from < self.time.to { bend() } else { 0.0 };
         lowest(self.ends.each_ref().map(|now| now.above(separation, parts)), bend) > 0.0
     }
@@ -146,7 +145,7 @@ impl Prover<'_> {
         }
         let size = half.map(|half| 2.0 * half.length());
         // Where points move further than the boxes are large, shorter spans say more than smaller boxes.
-        let moves = span.rates.guess_speed(size[1]) * (span.time.to - span.time.from);
+        let moves = span.rates.guess_speed(size[1]);
         if moves > size[0].max(size[1])
             && let Some(halves) = self.halves(task)
         {

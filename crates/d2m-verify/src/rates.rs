@@ -15,7 +15,7 @@ use crate::{Body, TimeSpan};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
 use d2m_motion::Ball;
 
-/// Enclosures over a span, world axes.
+/// Enclosures over a span, world axes; a unit of time is as long as the span.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rates {
     turn: [IntervalMat3; 2],
@@ -85,7 +85,7 @@ impl Rates {
     }
 }
 
-/// A lower bound of g on [0, L] from g(0) ≥ `start`, g(L) ≥ `end` and g″ ≤ K, with `bend` ≥ K L²/2.
+/// A lower bound of g on [0, L] from g(0) ≥ `start`, g(L) ≥ `end` and g″ ≤ K, with `bend` ≥ K L²/2 (of rates in the span: K/2).
 ///
 /// At τL the chord is at most bend·τ(1 − τ) above g: with m the lesser end and D how much greater the other one is, that leaves m where
 /// D ≥ bend, and m − (bend − D)²/(4 bend) otherwise (with D = 0: m − K L²/8).

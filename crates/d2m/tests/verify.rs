@@ -2,10 +2,11 @@
 #![cfg(feature = "verify")]
 
 use d2m::bvh::{Evidence, StartState};
+use d2m::glam::DVec3;
 use d2m::verify::{Reason, Verdict, Verifier};
 use d2m::{
-    Budget, ClearanceOptions, Contact, MeshTree, Mode, Moving, QueryOptions, Solid, SpanStatus,
-    TimeOfContact, TriMesh, Window, clearance, contact_spans, departure, time_of_contact,
+    Budget, ClearanceOptions, ConstantTwist, Contact, MeshTree, Mode, Moving, QueryOptions, Solid,
+    SpanStatus, TimeOfContact, TriMesh, Window, clearance, contact_spans, departure, time_of_contact,
 };
 use d2m_testing::{Draw, KnuthRandom, SmallScene, Surface};
 
@@ -199,4 +200,41 @@ fn other_questions_are_proven_again() {
         }
     }
     assert!(verified >= all - 1 && lies > 500, "{verified} of {all}, {lies} lies");
+}
+
+/// One cube falls onto another one, in units of time in which the square of its speed is no number, or none but zero: answers are proven as in
+/// any other one, and no tolerance that nothing explains is accepted.
+#[test]
+fn answers_are_proven_in_any_unit_of_time() {
+    let tree = MeshTree::new(mesh(&Surface::cube(0.5)));
+    let verifier = Verifier::try_new(tree.mesh(), tree.mesh()).unwrap();
+    for second in [1e-290, 1e-200, 1.0, 1e200, 1e290] {
+        let falling = ConstantTwist::REST
+            .with_position(DVec3::new(0.25, 0.125, 2.0))
+            .with_linear_velocity(DVec3::new(0.0, 0.125, -2.0) / second);
+        let bodies = [&ConstantTwist::REST, &falling].map(|motion| Moving::new(&tree, motion));
+        let (window, options) = (Window::try_new(0.0, second).unwrap(), QueryOptions::default());
+        let [a, b] = bodies;
+        let answer = time_of_contact(a, b, window, &options).unwrap();
+        let wanted = ClearanceOptions::default();
+        let nearest = clearance(a, b, window, &wanted).unwrap();
+        let spans = contact_spans(a, b, window, &options, None).unwrap();
+        let parted = departure(a, b, window, &options).unwrap();
+        let verdicts = [
+            verifier.time_of_contact(&bodies, window, &options, &answer, STEPS),
+            verifier.clearance(&bodies, window, &wanted, &nearest, STEPS),
+            verifier.contact_spans(&bodies, window, &options, None, &spans, STEPS),
+            verifier.departure(&bodies, window, &options, &parted, STEPS),
+        ];
+        let are_verified = verdicts.iter().all(|verdict| matches!(verdict, Verdict::Verified { .. }));
+        assert!(are_verified, "{second:e}: {verdicts:?}");
+        let TimeOfContact::Contact(mut lie) = answer else { panic!("{answer:?}") };
+        lie.tolerance = 0.5;
+        let verdict =
+            verifier.time_of_contact(&bodies, window, &options, &TimeOfContact::Contact(lie), STEPS);
+        assert!(
+            matches!(verdict, Verdict::Unproven { reason: Reason::Tolerance, .. }),
+            "{second:e}: {verdict:?}"
+        );
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::Reason;
 use crate::{Contact, Moving, Pose, QueryOptions, Twist, Window};
+use d2m_motion::length;
 
 /// δ if none is given, as a part of the larger body.
 const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -38,12 +39,12 @@ impl Scale {
         let states = [window.start(), time].map(|t| bodies.map(|moving| moving.motion.pose_and_twist(t)));
         let reaches = [0, 1].map(|k| {
             let (pose, _) = states[0][k];
-            sizes[k] + (bodies[k].body.center() - pose.at).length()
+            sizes[k] + length(bodies[k].body.center() - pose.at)
         });
-        let apart = |[(a, _), (b, _)]: &[(Pose, Twist); 2]| (a.translation - b.translation).length();
+        let apart = |[(a, _), (b, _)]: &[(Pose, Twist); 2]| length(a.translation - b.translation);
         let speed = |[(_, a), (_, b)]: &[(Pose, Twist); 2]| {
-            let turning = a.angular.length() * reaches[0] + b.angular.length() * reaches[1];
-            (a.linear - b.linear).length() + turning
+            let turning = length(a.angular) * reaches[0] + length(b.angular) * reaches[1];
+            length(a.linear - b.linear) + turning
         };
         let travel = speed(&states[0]).max(speed(&states[1])) * window.length();
         let lengths = reaches[0] + reaches[1] + apart(&states[0]).max(apart(&states[1])) + travel;
@@ -59,7 +60,7 @@ impl Scale {
         };
         let places = enclosed(&bodies[0]) + enclosed(&bodies[1]);
         let error = ERROR * lengths + BOXES * places;
-        let far = states[1].each_ref().map(|(pose, _)| pose.translation.length());
+        let far = states[1].each_ref().map(|(pose, _)| length(pose.translation));
         let rounded = places.min(PLACES * (far[0] + far[1] + reaches[0] + reaches[1]));
         Self {
             asked,

@@ -3,6 +3,7 @@
 use super::rounding::Scale;
 use crate::{Clearance, Contact, Moving, QueryOptions, StartState, Window};
 use d2m_feature::{FeaturePair, triangle_distance};
+use d2m_motion::length;
 use glam::DVec3;
 
 /// Roundings of weights, of a unit vector and of a speed, in units of 2⁻⁵².
@@ -54,7 +55,7 @@ pub fn witness_fault(
             return Some(names[1]);
         }
         let on_triangle: DVec3 = (0..3).map(|i| placed[k][i] * weights[k][i]).sum();
-        if is_off(points[k].distance(on_triangle + outward[k]), off) {
+        if is_off(length(points[k] - (on_triangle + outward[k])), off) {
             return Some(names[0]);
         }
     }
@@ -69,8 +70,8 @@ pub fn witness_fault(
     }
     let velocity = |k: usize| states[k].1.velocity_of(points[k] - states[k].0.translation);
     let closing = (velocity(0) - velocity(1)).dot(contact.normal);
-    let turning = |k: usize| states[k].1.angular.length() * (points[k] - states[k].0.translation).length();
-    let fastest = velocity(0).length() + velocity(1).length() + turning(0) + turning(1);
+    let turning = |k: usize| length(states[k].1.angular) * length(points[k] - states[k].0.translation);
+    let fastest = length(velocity(0)) + length(velocity(1)) + turning(0) + turning(1);
     if (closing - contact.closing_speed).abs() <= PART_OF_SPEED * fastest {
         None
     } else {
@@ -145,9 +146,9 @@ pub(super) fn clearance_fault(
     // Of rounded bodies that meet the meshes are within the radii; of triangles that cross nothing more is said.
     let does_cross = answer.upper == 0.0 && triangle_distance(&placed[0], &placed[1]).lower == 0.0;
     let [between, most, least] = if answer.upper > 0.0 {
-        [points[0].distance(points[1]), answer.upper, answer.upper - above]
+        [length(points[0] - points[1]), answer.upper, answer.upper - above]
     } else {
-        [(points[0] + inward[0]).distance(points[1] + inward[1]), radii + above, 0.0]
+        [length((points[0] + inward[0]) - (points[1] + inward[1])), radii + above, 0.0]
     };
     if !does_cross && (is_off(between, most + 2.0 * error) || is_off(least, between + 2.0 * error)) {
         return Some("clearance");
