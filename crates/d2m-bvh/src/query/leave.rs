@@ -45,7 +45,7 @@ pub struct Departure {
     /// How the bodies stand at the start of the window.
     pub start: StartState,
     /// The bodies are within L = `min_separation` + δ at `lo` (or that is the start), and proven further apart than that at `hi`. Bodies that
-    /// begin apart: the start, twice. `None`: they are never proven apart in the window.
+    /// begin apart: the start, twice. `None`: they are never proven to have left in the window.
     pub left: Option<TimeBracket>,
     /// The first contact after `left.hi`, with the promises of [`time_of_contact`](crate::time_of_contact) from there on; where the bodies
     /// never part the contact at the start.
@@ -56,8 +56,8 @@ pub struct Departure {
 ///
 /// Promise: `left.hi` is a time at which the distance is proven to be more than L = `min_separation` + δ, and from there on the answer is
 /// that of [`time_of_contact`](crate::time_of_contact). As long as the bodies are proven to stay within L of each other – in spans, and
-/// where no span is proven at times that are 1e-6 of the window apart – they have not left. With [`Mode::Exists`](crate::Mode::Exists) the answer is
-/// some contact after that, not the first one: nothing is promised of the time before it.
+/// where no span is proven at times that are 1e-6 of the window apart – they have not left; nor have they for certain where they part by no more than
+/// 13 δ and come back. With [`Mode::Exists`](crate::Mode::Exists) the answer is some contact after that, not the first one.
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, Moving, QueryOptions, StartState, TriMesh, Window, departure};
