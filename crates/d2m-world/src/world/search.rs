@@ -342,11 +342,20 @@ impl World {
                     let until = clear_until.next_down();
                     if until >= window.start() { Known::ClearUntil(until) } else { Known::Nothing }
                 }
-                Ok(TimeOfContact::Contact(contact)) => {
+                Ok(TimeOfContact::Contact(mut contact)) => {
+                    if window.start() > span_start {
+                        // Proven apart before its own question begins, and so at the start of this one.
+                        contact.start = StartState::Apart;
+                    }
                     let begin = (kind == Kind::BeginsApart).then_some(span_start);
                     finding.contacts.push((pair, with_start(contact, begin)));
                     finding.kept.push(Entry { time: contact.time_lo, ..entry });
-                    Known::Contact(Box::new(contact))
+                    // How bodies meet at the start takes a search of its own: one that the budget may have ended is to be made again.
+                    if contact.start != StartState::Apart && meter.is_exhausted() {
+                        Known::Nothing
+                    } else {
+                        Known::Contact(Box::new(contact))
+                    }
                 }
             };
             #[cfg(feature = "audit")]

@@ -323,3 +323,41 @@ fn given_candidates_are_all_that_is_asked() {
     world.set_min_separation(far, tool, Some(1.0));
     met(ask(&world, &[given(far, 0.0, 1.0)]), far, 0.5);
 }
+
+/// How bodies meet at the start takes a search of its own. Where a budget ends it, a later question without one is answered as by a new world.
+#[test]
+fn a_budget_that_ends_is_forgotten_at_the_start() {
+    let ring = Arc::new(MeshTree::new(d2m_shapes::mesh("torus?triangles=600").unwrap()));
+    let turned = ConstantTwist::REST.with_orientation(DQuat::from_rotation_x(1.0));
+    let mut fresh = World::new(QueryOptions::default());
+    for motion in [ConstantTwist::REST, turned.with_position(DVec3::X * 0.8)] {
+        fresh.add(Body::new(Arc::clone(&ring), motion));
+    }
+    let known = fresh.clone().contacts(Window::UNIT).unwrap();
+    for tests in (0..600).step_by(10) {
+        let mut world = fresh.clone();
+        world.set_budget(Budget::UNLIMITED.with_node_tests(tests));
+        let _ = world.contacts(Window::UNIT).unwrap();
+        world.set_budget(Budget::UNLIMITED);
+        assert_eq!(world.contacts(Window::UNIT).unwrap(), known, "{tests} tests");
+    }
+}
+
+/// Three pairs that meet at nearly the same time: the third one is searched until the first ones have met, and later from there on, where it is
+/// within the tolerance already. Its bodies do not meet at the start.
+#[test]
+fn what_is_searched_from_a_later_time_on_is_apart_at_the_start() {
+    let cube = cube();
+    for step in 0..40 {
+        let mut world = World::new(QueryOptions::default());
+        for (place, later) in [(0.0, 0.0), (9.0, 0.0), (18.0, 2e-11 * f64::from(step))] {
+            world.add(Body::new(Arc::clone(&cube), flying(DVec3::Y * place, DVec3::ZERO)));
+            let from = DVec3::new(6.0 + later, place, 0.0);
+            world.add(Body::new(Arc::clone(&cube), flying(from, DVec3::X * -8.0)));
+        }
+        assert!(matches!(world.first_contact(Window::UNIT).unwrap(), FirstContact::Contact { .. }));
+        let all = world.contacts(Window::UNIT).unwrap();
+        let starts = all.iter().map(|pair| pair.answer.contact().map(|contact| contact.start));
+        assert!(starts.eq([Some(d2m_bvh::StartState::Apart); 3]), "{step}: {all:?}");
+    }
+}
