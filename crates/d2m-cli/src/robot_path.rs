@@ -55,7 +55,16 @@ fn is_time(time: &Value) -> bool {
 const WORD: &str = "word";
 
 fn shown(value: &Value) -> String {
-    value.get(WORD).and_then(Value::as_str).map_or_else(|| short(value), str::to_owned)
+    let mut value = value.clone();
+    if let Some(word) = value.get(WORD).and_then(Value::as_str) {
+        return word.to_owned();
+    }
+    for part in value.as_object_mut().into_iter().flat_map(serde_json::Map::values_mut) {
+        if let Some(word) = part.get(WORD).cloned() {
+            *part = word;
+        }
+    }
+    short(&value)
 }
 
 /// The same text with `NaN`, `inf`, `1e999` and their like as objects, so that it can be parsed.

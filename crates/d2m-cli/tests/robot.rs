@@ -172,6 +172,7 @@ fn messages_of_ros_are_paths() {
         with(time, "points[1], time_from_start: {\"");
         with(time, "is not {\"sec\", \"nanosec\"} with numbers");
     }
+    with(r#"{"sec": 3, "nanosec": NaN}"#, r#"{"nanosec":"NaN","sec":3} is not"#);
     with(r#"{"sec": 3, "nanosec": 0.5}"#, "invalid type: floating point");
     with("\"3\"", "points[1], time_from_start: \"3\" is not a finite number");
 }

@@ -81,6 +81,12 @@ fn a_run_that_cannot_go_on_keeps_its_segments() {
     let last = run.last().unwrap()["t1"].as_f64().unwrap();
     assert!(run.len() > 10 && last > 0.2 && last < 1.0, "{last}");
     assert!(message.contains(&format!("run.jsonl holds the run until t = {last:?}")), "{message}");
+    // One that ends before its first step has no pace.
+    let scene =
+        folder.file("pushed.json", &text.replace("\"gravity\": [0, 0, 0]", "\"gravity\": [1e308, 0, 0]"));
+    let output = d2m(&["simulate", &scene, "--out", &folder.path("none.jsonl")]);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(stderr(&output).starts_with("0 simulated, 0 contact events, 0 skipped\n"), "{}", stderr(&output));
 }
 
 /// The file of an earlier, longer run is cut off before the first segment is written, and grows step by step.

@@ -4,7 +4,7 @@ use crate::arguments::SimulateArguments;
 use crate::engine::{number, threads};
 use crate::failure::Failure;
 use crate::load::named;
-use crate::output::{Output, Stream, note, progress_bar};
+use crate::output::{Output, Stream, digits, note, progress_bar, short};
 use crate::report::duration;
 use crate::simulation::{Line, SimulatedScene, Thinner, are_told_apart, header, read_scene, segment};
 use d2m_dynamics::{BodyId, Segment, StepError};
@@ -182,10 +182,11 @@ fn simulate(
     skipped += last.iter().map(|s| s.skipped).sum::<f64>();
     file.finish(&last)?;
     let time = scene.simulation.time();
-    let each = ended.took.as_secs_f64() / time.max(f64::MIN_POSITIVE);
-    note(&format!(
-        "{time} simulated, {each:.4} s a simulated second, {events} contact events, {skipped} skipped"
-    ));
+    // A run that ends before its first step has no pace.
+    let pace = (time > 0.0)
+        .then(|| format!("{} s a simulated second, ", digits(ended.took.as_secs_f64() / time)))
+        .unwrap_or_default();
+    note(&format!("{} simulated, {pace}{events} contact events, {} skipped", short(time), short(skipped)));
     ended.written = file.words();
     Ok(ended)
 }
