@@ -183,9 +183,11 @@ fn simulate(
     file.finish(&last)?;
     let time = scene.simulation.time();
     // A run that ends before its first step has no pace.
-    let pace = (time > 0.0)
-        .then(|| format!("{} s a simulated second, ", digits(ended.took.as_secs_f64() / time)))
-        .unwrap_or_default();
+    let pace = if time > 0.0 {
+        format!("{} s a simulated second, ", digits(ended.took.as_secs_f64() / time))
+    } else {
+        String::new()
+    };
     note(&format!("{} simulated, {pace}{events} contact events, {} skipped", short(time), short(skipped)));
     ended.written = file.words();
     Ok(ended)
