@@ -260,6 +260,26 @@ fn radii_are_exact() {
     assert_eq!(refused, Err(QueryError::BadRadius { body: 0, value: -1.0 }));
 }
 
+/// Bodies that go into each other have no clearance, and meet at a time, also where radii are below what rounding hides of the distance of two
+/// triangles.
+#[test]
+fn radii_below_rounding_are_met() {
+    let cube = cuboid(DVec3::splat(0.5));
+    let coming = ConstantTwist::REST.with_position(DVec3::X * 3.0).with_linear_velocity(DVec3::X * -4.0);
+    let still = Moving::new(&cube, &ConstantTwist::REST);
+    for radius in [0.0, 1e-320, 1e-200, 1e-30, 1e-20, 1e-15, 1e-12, 1e-3] {
+        let moving = Moving::new(&cube, &coming).with_radius(radius);
+        let found = clearance(moving, still, Window::UNIT, &ClearanceOptions::default()).unwrap();
+        assert_eq!((found.status, found.upper), (ClearanceStatus::Contact, 0.0), "{radius}: {found:?}");
+        let answer = time_of_contact(moving, still, Window::UNIT, &QueryOptions::default()).unwrap();
+        let met = answer.contact().expect("they meet");
+        assert!(
+            (found.time - met.time_lo).abs() < 1e-12 && found.normal == met.normal,
+            "{radius}: {found:?}"
+        );
+    }
+}
+
 /// Every span of random flights against samples.
 #[test]
 fn spans_hold_against_dense_sampling() {

@@ -12,9 +12,6 @@ const LOOKS: i32 = 16;
 impl Descent<'_> {
     /// Do they at the times of this contact, or at one of a few times later?
     pub(super) fn share_a_point_from(&mut self, contact: &Contact) -> bool {
-        if self.rounded.sum() != 0.0 {
-            return false;
-        }
         let (from, end) = (contact.time_hi, self.sampler.window.end());
         let later = (0..LOOKS).map(|k| (from + (end - from) * 0.5_f64.powi(k)).min(end));
         [contact.time_lo, from].into_iter().chain(later).any(|time| self.share_a_point_at(time))
