@@ -8,6 +8,7 @@ use crate::verification::{PairVerifier, Promise};
 use d2m::bvh::{Solid, StartState, TimeOfContact, Window};
 use d2m::feature::FeaturePair;
 use d2m::motion::RigidMotion;
+use d2m_io::{contact_fields, start_in_json};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -133,6 +134,11 @@ impl AnswerFile<'_> {
         }
         let answer: TimeOfContact =
             serde_json::from_value(object).map_err(|error| self.fault(&about.status, error))?;
+        // Of a contact it is a part of what is promised.
+        if !is_leaving && answer.contact().is_none() {
+            let known = &contact_fields(&answer, window)["start"];
+            self.check("start", about.start.is_none_or(|said| known == start_in_json(said)))?;
+        }
         match &answer {
             TimeOfContact::Separated => self.check("toc", about.toc.is_none() && about.time.is_none())?,
             TimeOfContact::Undecided { clear_until } => self.check("toc", about.toc == Some(*clear_until))?,

@@ -8,7 +8,7 @@ use crate::trials::Trial;
 use crate::unlike_sizes::{size_of, warn_of_sizes};
 use d2m::bvh::{
     Budget, Clearance, ClearanceOptions, ContactSpan, Departure, DistanceOptions, MeshTree, Mode, Moving,
-    Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, Topology, TriMesh, Window, clearance,
+    Posed, QueryError, QueryOptions, Solid, TimeOfContact, Topology, TriMesh, Window, clearance,
     contact_spans, departure, distance_within, time_of_contact,
 };
 use d2m::motion::{AnyMotion, RigidMotion};
@@ -89,17 +89,6 @@ pub(crate) struct ClearanceAnswer {
 pub(crate) struct Further {
     pub(crate) clearance: Option<Clearance>,
     pub(crate) departure: Option<Departure>,
-}
-
-impl Further {
-    /// How the bodies stand at the start of the window. What the query does not know begins apart: it would be in contact there.
-    pub(crate) fn start(&self, verdict: &TimeOfContact) -> StartState {
-        match (&self.departure, verdict) {
-            (Some(departure), _) => departure.start,
-            (None, TimeOfContact::Contact(contact)) => contact.start,
-            (None, _) => StartState::Apart,
-        }
-    }
 }
 
 /// An answer with the time that the query alone took.

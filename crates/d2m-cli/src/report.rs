@@ -101,7 +101,7 @@ pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer) -> String {
     let mut put = |key: &str, value: Value| {
         object[key] = value;
     };
-    for (key, value) in contact_fields(&answer.verdict) {
+    for (key, value) in contact_fields(&answer.verdict, window) {
         put(&key, value);
     }
     if let Some(clearance) = &further.clearance {
@@ -109,10 +109,9 @@ pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer) -> String {
     }
     if let Some(departure) = &further.departure {
         put("left", json!(departure.left));
+        put("start", json!(start_in_json(departure.start)));
+        put("start_proven", json!(departure.start != StartState::Undecided));
     }
-    let start = further.start(&answer.verdict);
-    put("start", json!(start_in_json(start)));
-    put("start_proven", json!(start != StartState::Undecided));
     format!("{object}\n")
 }
 

@@ -111,6 +111,38 @@ fn edited_answers_are_never_verified() {
     assert_eq!(other.status.code(), Some(3), "{}", stderr(&other));
 }
 
+/// Bodies begin apart where some of the window is proven free. Where nothing is, nothing is said of their start, which may be in each other.
+#[test]
+fn what_is_not_known_of_the_start_is_not_said() {
+    let folder = Folder::new("verify-start");
+    let ask = |place: &str, more: &[&str]| {
+        let bodies = ["shape:box?x=0.5&y=0.5&z=0.5", "shape:torus?triangles=200", "--motion-a", place];
+        d2m(&[&["toc", "--json"], &bodies[..], more].concat())
+    };
+    let verified = |place: &str, answer: &Value| {
+        let path = folder.file("answer.json", &answer.to_string());
+        let bodies = ["shape:box?x=0.5&y=0.5&z=0.5", "shape:torus?triangles=200", "--motion-a", place];
+        let out = d2m(&[&["verify", "--answer", &path], &bodies[..]].concat());
+        (out.status.code(), stderr(&out))
+    };
+    for (place, budget, start, proven) in [
+        ("x=0.9,0,0", "0", "overlapping", false),
+        ("x=-4,0,0;v=8,0,0", "20", "apart", true),
+        ("x=4,0,0", "0", "apart", true),
+    ] {
+        let answer: Value = serde_json::from_str(&stdout(&ask(place, &["--budget", budget]))).unwrap();
+        assert_ne!(answer["status"], "contact", "{answer}");
+        assert_eq!((&answer["start"], &answer["start_proven"]), (&json!(start), &json!(proven)), "{answer}");
+        assert_eq!(verified(place, &answer).0, Some(0), "{answer}");
+        for lie in ["apart", "touching", "overlapping", "contained"].into_iter().filter(|&lie| lie != start) {
+            let mut edited = answer.clone();
+            edited["start"] = json!(lie);
+            let (code, said) = verified(place, &edited);
+            assert!(code == Some(3) && said.contains("start: "), "{lie}: {code:?} {said}");
+        }
+    }
+}
+
 /// Answers of other questions: as they are printed they are verified, edited they are not.
 #[test]
 fn answers_of_every_question_are_verified() {

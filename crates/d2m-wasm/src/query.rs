@@ -99,7 +99,7 @@ pub(crate) fn time_of_contact(bodies: [Given<'_>; 2], options: &str) -> Result<V
         TimeOfContact::Separated if options.clearance => Some(pair.clearance(&options)?),
         _ => None,
     };
-    let mut answer = contact_fields(&verdict);
+    let mut answer = contact_fields(&verdict, pair.window);
     let mut put = |key: &str, value: Value| answer.insert(key.to_owned(), value);
     put("microseconds", json!(microseconds));
     put("window", json!([pair.window.start(), pair.window.end()]));

@@ -1,19 +1,21 @@
 //! Answers as JSON objects: what is stated of them wherever they are written.
 
 use super::words::{feature_field, start_in_json, verdict_word};
-use d2m_bvh::{Clearance, ClearanceStatus, Distance, StartState, TimeOfContact};
+use d2m_bvh::{Clearance, ClearanceStatus, Distance, StartState, TimeOfContact, Window};
 use serde_json::{Map, Value, json};
 
 /// What is stated of a first contact: the fields of [`Contact`](d2m_bvh::Contact) under their own names, the time as `toc`, `toc_hi`
-/// and `time`, the point and the feature pair as in result files, and how the bodies stand at the start of the window. (Bodies that are
-/// separated or undecided begin apart: else they would be in contact there.)
+/// and `time`, the point and the feature pair as in result files, and how the bodies stand at the start of the window that was asked about.
+/// (Bodies that are separated begin apart, and undecided ones where some of the window is proven free; else nothing is known of it.)
 ///
 /// ```
-/// use d2m_bvh::TimeOfContact;
-/// let fields = d2m_io::contact_fields(&TimeOfContact::Undecided { clear_until: 0.5 });
+/// use d2m_bvh::{TimeOfContact, Window};
+/// let fields = d2m_io::contact_fields(&TimeOfContact::Undecided { clear_until: 0.5 }, Window::UNIT);
 /// assert_eq!((&fields["status"], &fields["toc"], &fields["start"]), (&"undecided".into(), &0.5.into(), &"apart".into()));
+/// let fields = d2m_io::contact_fields(&TimeOfContact::Undecided { clear_until: 0.0 }, Window::UNIT);
+/// assert_eq!(fields["start_proven"], false);
 /// ```
-pub fn contact_fields(verdict: &TimeOfContact) -> Map<String, Value> {
+pub fn contact_fields(verdict: &TimeOfContact, window: Window) -> Map<String, Value> {
     let mut fields = match serde_json::to_value(verdict) {
         Ok(Value::Object(fields)) => fields,
         _ => Map::new(),
@@ -24,6 +26,9 @@ pub fn contact_fields(verdict: &TimeOfContact) -> Map<String, Value> {
     match verdict {
         TimeOfContact::Separated => {}
         TimeOfContact::Undecided { clear_until } => {
+            if *clear_until <= window.start() {
+                start = StartState::Undecided;
+            }
             put("toc", json!(clear_until));
         }
         TimeOfContact::Contact(contact) => {
