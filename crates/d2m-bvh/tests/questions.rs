@@ -280,6 +280,21 @@ fn radii_below_rounding_are_met() {
     }
 }
 
+/// Bodies that overlap at the start never begin apart, whatever budget ends the search; where it ends the one of the start nothing is known of it.
+#[test]
+fn a_start_that_was_not_searched_is_undecided() {
+    let ring = tree(Surface::wavy_torus(9, 6, 0.35));
+    let pulled = ConstantTwist::REST.with_position(DVec3::X * 0.4).with_linear_velocity(DVec3::Z * 4.0);
+    let [a, b] = [Moving::new(&ring, &ConstantTwist::REST), Moving::new(&ring, &pulled)];
+    let states = (0..400).step_by(4).map(|tests| {
+        let options = QueryOptions::default().with_budget(Budget::UNLIMITED.with_node_tests(tests));
+        departure(a, b, Window::UNIT, &options).unwrap().start
+    });
+    let states: Vec<StartState> = states.collect();
+    assert!(!states.contains(&StartState::Apart) && states[0] == StartState::Undecided, "{states:?}");
+    assert_eq!(states.last(), Some(&StartState::Overlapping));
+}
+
 /// Every span of random flights against samples.
 #[test]
 fn spans_hold_against_dense_sampling() {

@@ -115,7 +115,7 @@ pub(super) fn of_departing(
             return Ok(Answered { answer, work: work.with(&found.work) });
         }
         undecided @ TimeOfContact::Undecided { .. } => {
-            let answer = Departure { start: StartState::Apart, left: None, answer: undecided };
+            let answer = Departure { start: StartState::Undecided, left: None, answer: undecided };
             return Ok(Answered { answer, work });
         }
         TimeOfContact::Contact(contact) => contact,
