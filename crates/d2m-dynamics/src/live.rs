@@ -378,7 +378,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Restitution and friction of one pair, instead of what follows from its bodies.
+    /// Restitution and friction of one pair, instead of what follows from its bodies; of a body and itself nothing is kept.
     ///
     /// # Errors
     /// A restitution outside [0, 1], a friction that is negative or not finite. Nothing changes then.
@@ -394,7 +394,7 @@ impl Simulation {
     ) -> Result<(), SimulationError> {
         check_material(restitution, friction)?;
         let key = self.key(a, b);
-        self.materials.insert(key, Material { restitution, friction });
+        self.materials.extend((key.0 != key.1).then_some((key, Material { restitution, friction })));
         self.drop_known(key.0);
         self.drop_known(key.1);
         Ok(())

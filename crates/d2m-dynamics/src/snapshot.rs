@@ -347,6 +347,7 @@ mod tests {
         let ids: Vec<_> = simulation.ids().collect();
         simulation.ignore(ids[0], ids[0]);
         simulation.ignore(ids[1], ids[0]);
+        simulation.set_pair(ids[0], ids[0], 0.5, 0.5).unwrap();
         let snapshot = simulation.snapshot();
         simulation.restore(&snapshot).unwrap();
         assert_eq!(simulation.snapshot(), snapshot);
