@@ -1,13 +1,12 @@
 //! Velocities of the flights of one island until a given time: targets, solution, and where flights end, put right.
 
-use crate::SimulationOptions;
 use crate::contact::{
     Accuracy, Company, ContactPoint, Present, Room, SolverBody, Span, Start, System, add, in_common_turn,
     select,
 };
 use crate::ends::Ends;
-use crate::joint_rows::Joined;
 use crate::momenta::Momenta;
+use crate::problem::Problem;
 use crate::pull::{couples, pulls};
 use crate::rigid_body::RigidBody;
 use crate::solved_body::{body_at, moves, still};
@@ -26,6 +25,9 @@ const STILL: f64 = 0.05;
 const RELATIVE: f64 = 1.0 / 1024.0;
 /// Where contacts share what room is left, so much less: what is left of solutions is taken from the same contacts again and again.
 const SHARED: f64 = 1.0 / 64.0;
+/// The part of a gap a step that the ends of flights may be off what joints ask for: what is more is not corrected but diverges, as where the
+/// end of a long chain whips round, and shorter flights are solved for.
+const OFF_JOINT: f64 = 1e-2;
 /// Solutions with the spin of the flight's middle put right.
 const CORRECTIONS: u32 = 3;
 /// Of crowds, whose solutions are less exact than that.
@@ -35,8 +37,6 @@ const JOINT_CORRECTIONS: u32 = 8;
 /// How many times further off than what is not corrected at all corrections are given up, which saves time where they diverge. Under brakes they may come
 /// back from there.
 const FAR_OFF: f64 = 8.0;
-/// Ratio of masses up to which jointed bodies are alike.
-pub(crate) const LIKE: f64 = 4.0;
 /// The part of the gap at which it does so no longer, and hardly any is left.
 const LAST: f64 = 1.0 / 64.0;
 /// The part of a flight for which contacts with less than that keep some of it.
@@ -48,18 +48,6 @@ const RESTORED: f64 = 1.0 / 16.0;
 pub(crate) enum Brakes {
     None,
     OfOscillations,
-}
-
-/// What velocities are solved for.
-#[derive(Clone, Copy)]
-pub(crate) struct Problem<'s> {
-    /// Body numbers, ascending, and the bodies, with their impacts.
-    pub(crate) members: &'s [usize],
-    pub(crate) states: &'s [Cow<'s, RigidBody>],
-    pub(crate) contacts: &'s [&'s ContactPoint],
-    pub(crate) options: &'s SimulationOptions,
-    pub(crate) joints: &'s [Joined],
-    pub(crate) company: Company,
 }
 
 /// Velocities for flights until `end`.
@@ -155,35 +143,6 @@ impl Attempt {
 }
 
 impl Problem<'_> {
-    /// Do joints connect bodies of unlike masses, or hold one between others?
-    fn may_be_braked(&self) -> bool {
-        let rows = || self.contacts.iter().filter(|contact| contact.row.is_some());
-        let ends =
-            rows().flat_map(|contact| [contact.a, contact.b]).map(|body| &self.states[self.place(body)]);
-        let masses = ends.filter(|s| moves(s)).map(|s| s.mass);
-        let (least, most) = masses.fold((f64::INFINITY, 0.0f64), |(lo, hi), m| (lo.min(m), hi.max(m)));
-        most > LIKE * least || self.has_chain()
-    }
-
-    /// The places of the bodies that motors drive against each other.
-    pub(crate) fn driven(&self) -> impl Iterator<Item = usize> {
-        let joints = self.numbers().into_iter().map(|number| &self.joints[number]);
-        let driven = joints.filter(|joined| joined.joint.motor.is_some());
-        driven.flat_map(|joined| joined.bodies).map(|body| self.place(body))
-    }
-
-    /// Does more than one joint hold a body?
-    fn has_chain(&self) -> bool {
-        let ends = self.numbers().into_iter().flat_map(|number| self.joints[number].bodies);
-        let mut held: Vec<usize> = ends.filter(|&body| moves(&self.states[self.place(body)])).collect();
-        held.sort_unstable();
-        held.windows(2).any(|two| two[0] == two[1])
-    }
-
-    pub(crate) fn place(&self, body: usize) -> usize {
-        self.members.binary_search(&body).unwrap_or_default()
-    }
-
     /// With brakes on what oscillates fast; in closed chains, as most mechanisms are, only where flights would not meet their joints without.
     pub(crate) fn attempt(&self, now: f64, end: f64, room: Room) -> Attempt {
         let attempt = |brakes: Brakes| self.attempt_with(now, end, room, brakes);
@@ -299,6 +258,32 @@ impl Problem<'_> {
         }
         attempt.couple(self.members);
         attempt
+    }
+
+    /// Are joints met at the end of a flight, and do they go less than half round in it?
+    pub(crate) fn is_met(&self, attempt: &Attempt) -> bool {
+        self.ends_at_joints(attempt) && !self.turns_over(attempt)
+    }
+
+    /// Are joints met at the end of a flight, by whichever way?
+    pub(crate) fn ends_at_joints(&self, attempt: &Attempt) -> bool {
+        attempt.found.missed <= OFF_JOINT * self.speed()
+    }
+
+    /// Does a flight tear joints by more than a gap, after which nothing brings their bodies together again?
+    pub(crate) fn is_torn(&self, attempt: &Attempt) -> bool {
+        attempt.found.missed * attempt.span.remaining > self.options.gap || self.turns_over(attempt)
+    }
+
+    /// Does a joint go round a center by half a turn or more in a flight? Then where the flight ends says no more which way that was: joints are met
+    /// there by any whole turns.
+    fn turns_over(&self, attempt: &Attempt) -> bool {
+        let goes_round = |body: usize, arm: DVec3| {
+            let spin = attempt.system.bodies[self.place(body)].velocity.angular;
+            spin.cross(arm).length() * attempt.span.remaining > core::f64::consts::PI * arm.length()
+        };
+        let equations = self.contacts.iter().filter(|c| c.row.is_some_and(|row| row.equation.is_some()));
+        equations.into_iter().any(|c| goes_round(c.a, c.arm_a) || goes_round(c.b, c.arm_b))
     }
 }
 

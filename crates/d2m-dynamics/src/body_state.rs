@@ -234,7 +234,7 @@ impl BodyState {
 mod tests {
     use super::*;
     use crate::Body;
-    use crate::faces::Faces;
+    use d2m_mesh::Faces;
     use d2m_motion::Pose;
 
     type Change = &'static dyn Fn(&mut BodyState);

@@ -178,9 +178,9 @@ mod tests {
     use super::*;
     use crate::Body;
     use crate::drawn::{draw, vector};
-    use crate::faces::Faces;
     use crate::velocity::Velocity;
     use d2m_bvh::{MeshTree, Posed, Solid, distance};
+    use d2m_mesh::Faces;
     use d2m_motion::{ConstantTwist, RigidMotion};
     use std::sync::Arc;
 

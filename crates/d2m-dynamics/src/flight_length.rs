@@ -1,10 +1,11 @@
 //! How long the flights of an island are: until when velocities can be solved for, and what gives way where there are none.
 
-use crate::attempt::{Attempt, Brakes, LIKE, Problem};
+use crate::attempt::{Attempt, Brakes};
 use crate::contact::{Company, ContactPoint, LEFT_OVER, NEAR, Room};
 use crate::flight::Splits;
 use crate::gained::{Gained, is_of_joints_alone};
 use crate::joint_rows::Ahead;
+use crate::problem::Problem;
 use crate::pull::pulls;
 use crate::rigid_body::RigidBody;
 use crate::solved_body::moves;
@@ -14,9 +15,6 @@ use std::borrow::Cow;
 
 /// Moved bodies of an island from which on it flies to the end of the step however its bodies tumble.
 const MANY: usize = 20;
-/// The part of a gap a step that the ends of flights may be off what joints ask for: what is more is not corrected but diverges, as where the
-/// end of a long chain whips round, and shorter flights are solved for.
-const OFF_JOINT: f64 = 1e-2;
 /// The square of the angle by which an oscillation leads in a flight, from which on flights make more of it: where impulses act at their starts.
 const UNSTABLE: f64 = 4.0;
 /// The part of the energy that flights gain which flights of half the length may gain: one quarter is due.
@@ -149,22 +147,6 @@ impl Problem<'_> {
         self.squeezed([now, end], closing, leaves, friction).unwrap_or(tried)
     }
 
-    /// Does a flight tear joints by more than a gap, after which nothing brings their bodies together again?
-    pub(crate) fn is_torn(&self, attempt: &Attempt) -> bool {
-        attempt.found.missed * attempt.span.remaining > self.options.gap || self.turns_over(attempt)
-    }
-
-    /// Does a joint go round a center by half a turn or more in a flight? Then where the flight ends says no more which way that was: joints are met
-    /// there by any whole turns.
-    fn turns_over(&self, attempt: &Attempt) -> bool {
-        let goes_round = |body: usize, arm: DVec3| {
-            let spin = attempt.system.bodies[self.place(body)].velocity.angular;
-            spin.cross(arm).length() * attempt.span.remaining > core::f64::consts::PI * arm.length()
-        };
-        let equations = self.contacts.iter().filter(|c| c.row.is_some_and(|row| row.equation.is_some()));
-        equations.into_iter().any(|c| goes_round(c.a, c.arm_a) || goes_round(c.b, c.arm_b))
-    }
-
     /// The speed of the fastest point of a body.
     fn fastest(&self, attempt: &Attempt) -> f64 {
         let bodies = self.states.iter().zip(&attempt.system.bodies).filter(|(s, _)| moves(s));
@@ -189,11 +171,6 @@ impl Problem<'_> {
         self.with_rigid(&self.of_closed_chains()?, span)
     }
 
-    /// Are joints met at the end of a flight, and do they go less than half round in it?
-    pub(crate) fn is_met(&self, attempt: &Attempt) -> bool {
-        attempt.found.missed <= OFF_JOINT * self.speed() && !self.turns_over(attempt)
-    }
-
     /// Closed chains that motors drive, or bodies that move and that joints without motors connect, as one where no flight is short enough for their joints.
     fn snapped(&self, tried: &Attempt, span: [f64; 2]) -> Option<Attempt> {
         let is_driven = self.driven().next().is_some();
@@ -214,7 +191,7 @@ impl Problem<'_> {
         let contacts: Vec<&ContactPoint> = contacts.iter().collect();
         let rigid = Problem { contacts: &contacts, joints: &joints, ..*self };
         let attempt = rigid.attempt_with(now, end, Room::Kept, Brakes::None);
-        (attempt.found.missed <= OFF_JOINT * self.speed() && attempt.may_last()).then_some(attempt)
+        (self.ends_at_joints(&attempt) && attempt.may_last()).then_some(attempt)
     }
 
     /// Do joints pull bodies to and fro faster than flights could follow?
@@ -225,13 +202,6 @@ impl Problem<'_> {
         let found = &attempt.found.contacts;
         let pulls = pulls(&[], self.states, &spins, found, length, |body| self.place(body));
         pulls.into_iter().flatten().any(|pull| pull.speed >= UNSTABLE)
-    }
-
-    /// Do joints hold bodies of like masses? Light ones between heavy ones are pulled to and fro faster than they turn.
-    fn has_like_joints(&self) -> bool {
-        let masses = || self.states.iter().filter(|s| moves(s)).map(|s| s.mass);
-        let (least, most) = masses().fold((f64::INFINITY, 0.0f64), |(lo, hi), m| (lo.min(m), hi.max(m)));
-        self.contacts.iter().any(|contact| contact.row.is_some()) && most <= LIKE * least
     }
 
     /// The longest flights, of some lengths, in which contacts close by no more than the room that they share, and solutions leave no more
@@ -273,11 +243,6 @@ impl Problem<'_> {
         };
         let usual = found(leaves.usual).filter(|attempt| self.fastest(attempt) <= leaves.fastest);
         usual.or_else(|| found(leaves.most))
-    }
-
-    /// A gap in a step.
-    fn speed(&self) -> f64 {
-        self.options.gap / self.options.step
     }
 
     /// How fast, and for how long, what follows its motion closes in on bodies that stand still. None: nothing does, within the gap or so.

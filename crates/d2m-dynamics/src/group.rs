@@ -2,15 +2,15 @@
 
 use crate::SimulationOptions;
 use crate::account::{Anchor, Entry, balance};
-use crate::attempt::Problem;
 use crate::contact::{Company, ContactPoint, HIT, Span, System, add, impact};
 use crate::flight_length::Clock;
 use crate::joint_rows::Joined;
 use crate::momenta::Momenta;
+use crate::problem::Problem;
 use crate::rigid_body::RigidBody;
 use crate::solved_body::{body_at, moves, still, world_inertia};
-use crate::union::{join, root};
 use crate::velocity::Velocity;
+use d2m_mesh::DisjointSets;
 use glam::DMat3;
 use std::borrow::Cow;
 
@@ -50,17 +50,17 @@ pub(crate) struct Push {
 
 /// The islands of some contacts: bodies that impulses move connect, the others do not. In the order of their first contact.
 pub(crate) fn islands<'c>(bodies: &[RigidBody], contacts: Vec<&'c ContactPoint>) -> Vec<Island<'c>> {
-    let mut parent: Vec<usize> = (0..bodies.len()).collect();
+    let mut joined = DisjointSets::new(bodies.len());
     let moves = |i: usize| moves(&bodies[i]);
     for c in contacts.iter().filter(|c| moves(c.a) && moves(c.b)) {
-        join(&mut parent, c.a, c.b);
+        joined.join([c.a as u32, c.b as u32]);
     }
     let mut place: Vec<Option<usize>> = vec![None; bodies.len()];
     let mut sizes: Vec<usize> = Vec::new();
     let mut numbers = Vec::with_capacity(contacts.len());
     for c in &contacts {
         let body = if moves(c.a) { c.a } else { c.b };
-        let number = *place[root(&mut parent, body)].get_or_insert(sizes.len());
+        let number = *place[joined.root(body as u32) as usize].get_or_insert(sizes.len());
         if number == sizes.len() {
             sizes.push(0);
         }

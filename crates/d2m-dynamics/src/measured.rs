@@ -1,9 +1,8 @@
 //! The contacts of two bodies at one instant: the closest features that count.
 
 use crate::contact::{ContactPoint, Material, tangents};
-use crate::faces::vertices_of;
 use crate::rigid_body::RigidBody;
-use d2m_bvh::{Proximity, ProximityOptions, QueryError, proximities_with, reduce_proximities};
+use d2m_bvh::{Proximity, ProximityOptions, QueryError, TriMesh, proximities_with, reduce_proximities};
 use d2m_feature::FeaturePair;
 use d2m_motion::Pose;
 use glam::DVec3;
@@ -180,12 +179,22 @@ fn along(p: &Proximity, normals: &[DVec3], most: f64) -> Option<Proximity> {
     ((nearest - p.normal).length() <= most && distance > 0.0).then_some(straight)
 }
 
+/// The vertices of the features of A and of B.
+pub(crate) fn vertices_of(feature: FeaturePair, meshes: [&TriMesh; 2]) -> [[u32; 3]; 2] {
+    let face = |body: usize, triangle: u32| meshes[body].triangles()[triangle as usize];
+    match feature {
+        FeaturePair::VertexFace { vertex, face: triangle } => [[vertex; 3], face(1, triangle)],
+        FeaturePair::FaceVertex { face: triangle, vertex } => [face(0, triangle), [vertex; 3]],
+        FeaturePair::EdgeEdge { edge_a: [a, b], edge_b: [c, d] } => [[a, b, b], [c, d, d]],
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Body;
-    use crate::faces::Faces;
     use d2m_bvh::MeshTree;
+    use d2m_mesh::Faces;
     use glam::DQuat;
     use std::f64::consts::FRAC_PI_4;
     use std::sync::Arc;

@@ -1,10 +1,10 @@
 //! Bodies come, change and go; the one function that forgets what was proven of them.
 
-use crate::faces::Faces;
 use crate::pairs::Pair;
 use crate::quiet::Quiet;
 use crate::rigid_body::{RigidBody, Role};
 use crate::{Body, BodyId, Simulation, SimulationError};
+use d2m_mesh::Faces;
 use std::sync::Arc;
 
 impl Simulation {

@@ -260,10 +260,10 @@ fn part_within([first, last]: [f64; 2], [low, high]: [f64; 2], unsure: f64) -> O
 mod tests {
     use super::*;
     use crate::drawn::{draw, vector};
-    use crate::faces::Faces;
     use crate::velocity::Velocity;
     use crate::{Body, Kind, Mass, MassProperties};
     use d2m_bvh::{MeshTree, Posed, Solid, TriMesh, distance};
+    use d2m_mesh::Faces;
     use glam::{DMat3, DQuat};
     use std::sync::Arc;
 

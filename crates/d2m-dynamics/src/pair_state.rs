@@ -219,9 +219,9 @@ impl ContactState {
 mod tests {
     use super::*;
     use crate::Body;
-    use crate::faces::Faces;
     use crate::measured::measure;
     use d2m_bvh::MeshTree;
+    use d2m_mesh::Faces;
     use std::sync::Arc;
 
     type Change = &'static dyn Fn(&mut PairState);

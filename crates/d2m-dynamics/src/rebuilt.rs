@@ -2,13 +2,13 @@
 
 use crate::SimulationError;
 use crate::body::{Body, Kind, Presence};
-use crate::faces::Faces;
 use crate::numbers::UNUSABLE;
 use crate::quiet::Quiet;
 use crate::rigid_body::{RigidBody, Role, Target, rest};
 use crate::turning::rotation_vector;
 use crate::velocity::Velocity;
 use d2m_bvh::{MeshTree, TriMesh};
+use d2m_mesh::Faces;
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 

@@ -1,7 +1,6 @@
 //! The state of a body: what it is, where it is, what it weighs. What it flies: `flight`.
 
 use crate::body::{Body, BodyId, Damping, Groups, Kind, Mass, Presence};
-use crate::faces::Faces;
 use crate::hollow::{bores, cavity};
 use crate::momenta::Momenta;
 use crate::numbers::{Numbers, UNUSABLE, is_small};
@@ -12,6 +11,7 @@ use crate::velocity::Velocity;
 use crate::{MassProperties, SimulationError};
 use d2m_bvh::{MeshTree, Moving, QueryError, Solid};
 use d2m_interval::Interval;
+use d2m_mesh::Faces;
 use d2m_motion::{ConstantTwist, CoveredMotion};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;

@@ -6,8 +6,8 @@ use crate::contact::{ContactPoint, NEAR};
 use crate::group::CROWD;
 use crate::quiet::{Quiet, Rest};
 use crate::rigid_body::RigidBody;
-use crate::union::{join, root};
 use crate::velocity::Velocity;
+use d2m_mesh::DisjointSets;
 use glam::DVec3;
 
 /// Bodies of a simulation from which on parts of heaps sleep while others move: of fewer a step in which all are solved costs little.
@@ -155,15 +155,16 @@ fn beside(restless: &[bool], together: &[(usize, usize)]) -> Vec<bool> {
 
 /// All that is connected with something restless.
 fn connected(restless: &[bool], together: &[(usize, usize)]) -> Vec<bool> {
-    let mut parent: Vec<usize> = (0..restless.len()).collect();
+    let mut joined = DisjointSets::new(restless.len());
     for &(a, b) in together {
-        join(&mut parent, a, b);
+        joined.join([a as u32, b as u32]);
     }
     let mut awake = vec![false; restless.len()];
-    for (i, restless) in restless.iter().enumerate() {
-        awake[root(&mut parent, i)] |= restless;
+    let roots: Vec<usize> = (0..restless.len()).map(|i| joined.root(i as u32) as usize).collect();
+    for (&root, restless) in roots.iter().zip(restless) {
+        awake[root] |= restless;
     }
-    (0..restless.len()).map(|i| awake[root(&mut parent, i)]).collect()
+    roots.into_iter().map(|root| awake[root]).collect()
 }
 
 /// No momentum and no motion from now on.

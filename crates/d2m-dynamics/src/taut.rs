@@ -6,11 +6,11 @@
 //! diverge in flights of any length. Bodies of such chains move as one until the end of the flight, which keeps momenta and takes the energy that
 //! they move against each other with, as an inelastic impact does.
 
-use crate::attempt::Problem;
 use crate::contact::ContactPoint;
 use crate::joint_rows::{Ahead, Joined};
+use crate::problem::Problem;
 use crate::solved_body::moves;
-use crate::union::{join, root};
+use d2m_mesh::DisjointSets;
 
 impl Problem<'_> {
     /// Of the contacts, with the bodies: rows by which these joints hold their bodies as they are, and all joints as they are then.
@@ -30,14 +30,14 @@ impl Problem<'_> {
     /// The numbers of the joints that hold the bodies to others, the world among them, in order. None: they close no chain.
     pub(crate) fn of_closed_chains(&self) -> Option<Vec<usize>> {
         let (numbers, ground) = (self.numbers(), self.states.len());
-        let mut parent: Vec<usize> = (0..=ground).collect();
+        let mut joined = DisjointSets::new(ground + 1);
         let closes = numbers.iter().any(|&number| {
-            let [a, b] = self.joints[number].bodies.map(|body| {
+            let pair = self.joints[number].bodies.map(|body| {
                 let place = self.place(body);
-                if moves(&self.states[place]) { place } else { ground }
+                if moves(&self.states[place]) { place as u32 } else { ground as u32 }
             });
-            let is_closed = root(&mut parent, a) == root(&mut parent, b);
-            join(&mut parent, a, b);
+            let is_closed = joined.root(pair[0]) == joined.root(pair[1]);
+            joined.join(pair);
             is_closed
         });
         closes.then_some(numbers)
@@ -50,13 +50,5 @@ impl Problem<'_> {
         numbers.retain(|&number| self.joints[number].bodies.into_iter().all(is_moved));
         let is_driven = numbers.iter().any(|&number| self.joints[number].joint.motor.is_some());
         (!is_driven && !numbers.is_empty()).then_some(numbers)
-    }
-
-    /// The numbers of the joints of two bodies among the contacts, in order.
-    pub(crate) fn numbers(&self) -> Vec<usize> {
-        let mut numbers: Vec<usize> = self.contacts.iter().filter_map(|contact| contact.joint()).collect();
-        numbers.dedup();
-        numbers.retain(|&number| self.joints[number].is_between_bodies());
-        numbers
     }
 }

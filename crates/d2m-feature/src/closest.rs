@@ -49,6 +49,20 @@ pub fn closest_weights(point: DVec3, triangle: &[DVec3; 3]) -> [f64; 3] {
     point_triangle(point, triangle, (b - a).cross(c - a)).b
 }
 
+/// The point of a triangle closest to another one: of the triangle to rounding, the closest of it by a guess, which proves nothing.
+///
+/// ```
+/// use d2m_feature::closest_point;
+/// use glam::{DVec3, dvec3};
+/// let triangle = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Y * 4.0];
+/// assert_eq!(closest_point(dvec3(1.0, 1.0, 3.0), &triangle), dvec3(1.0, 1.0, 0.0));
+/// ```
+pub fn closest_point(point: DVec3, triangle: &[DVec3; 3]) -> DVec3 {
+    let [a, b, c] = *triangle;
+    let weights = closest_weights(point, triangle);
+    a + (b - a) * weights[1] + (c - a) * weights[2]
+}
+
 /// The point of a triangle closest to `p`. Sound for any triangle: the face is used only if the projection is inside
 /// by exact-sign-free tests and closer than all three edges.
 pub(crate) fn point_triangle(p: DVec3, triangle: &[DVec3; 3], normal: DVec3) -> ClosestPair {

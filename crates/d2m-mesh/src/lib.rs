@@ -27,7 +27,8 @@
 //!
 //! ## Queries of your own
 //! - [`node`]: the boxes of a tree. [`at_rest`]: questions at an instant. [`margin`]: outward roundings.
-//! - [`Simplex`]: the point of a hull that is nearest to the origin.
+//! - [`Simplex`]: the point of a hull that is nearest to the origin. [`Faces`]: triangles at vertices, and how far
+//!   flat parts of a surface go on. [`DisjointSets`]: what hangs together.
 //!
 //! ## Errors
 //! [`QueryError`], [`MeshError`], [`TreeError`], [`TreeFileError`]: bad input, with index and value. Hard
@@ -45,6 +46,7 @@ mod budget;
 mod cancel;
 mod enclosing_sphere;
 mod error;
+mod faces;
 pub mod margin;
 mod mass;
 mod mesh;
@@ -63,9 +65,10 @@ pub use cancel::{CancelFlag, Canceller};
 pub use d2m_lanes::InstructionSet;
 pub use enclosing_sphere::EnclosingSphere;
 pub use error::QueryError;
+pub use faces::Faces;
 pub use glam;
 pub use mass::{MassError, MassProperties};
-pub use mesh::{Edge, MAX_COORDINATE, MeshArrays, MeshError, Topology, TriMesh, Validation};
+pub use mesh::{DisjointSets, Edge, MAX_COORDINATE, MeshArrays, MeshError, Topology, TriMesh, Validation};
 pub use meter::{Exhausted, Meter, Stop};
 pub use nearest_point::Simplex;
 pub use posed::Posed;

@@ -159,9 +159,9 @@ mod tests {
     use super::*;
     use crate::Body;
     use crate::contact::upright;
-    use crate::faces::Faces;
     use d2m_bvh::MeshTree;
     use d2m_feature::FeaturePair;
+    use d2m_mesh::Faces;
     use glam::DVec3;
     use std::sync::Arc;
 

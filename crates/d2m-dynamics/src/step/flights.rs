@@ -124,10 +124,10 @@ impl Step<'_> {
 mod tests {
     use super::*;
     use crate::Body;
-    use crate::faces::Faces;
     use crate::flight::Splits;
     use crate::rigid_body::RigidBody;
     use d2m_bvh::MeshTree;
+    use d2m_mesh::Faces;
     use std::sync::Arc;
 
     /// Of bodies that tumble at different rates the flights end together: the times of each are those of the faster ones, too.

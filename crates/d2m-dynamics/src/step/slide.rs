@@ -1,9 +1,9 @@
 //! How far closest points may slide on their features until they may slip off, and which points beside them may further.
 
 use crate::contact::{ASKEW, CROSSING, ContactPoint, LEVER, ROUNDED};
-use crate::faces::{nearest_point, vertices_of};
+use crate::measured::vertices_of;
 use crate::rigid_body::RigidBody;
-use d2m_feature::FeaturePair;
+use d2m_feature::{FeaturePair, closest_point};
 use glam::DVec3;
 
 /// The part of the way to the corners and the middle of a triangle by which points beside a closest one are off it, 2⁻⁸: where that way is as long
@@ -55,7 +55,7 @@ fn beside(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) -> Vec<Sli
     for (k, other) in [(0, 1), (1, 0)] {
         for triangle in bodies[other].faces.around(&features[other]) {
             let corners = meshes[other].corners(triangle as usize);
-            let nearest = nearest_point(poses[other].inverse_transform_point(contact.point), &corners);
+            let nearest = closest_point(poses[other].inverse_transform_point(contact.point), &corners);
             let [a, b, c] = corners;
             let points = [a, b, c, (a + b + c) / 3.0].map(|to| nearest + (to - nearest) * BESIDE);
             found.extend(points.iter().filter_map(|&p| over(poses[other].transform_point(p), k)));
@@ -99,9 +99,9 @@ mod tests {
     use super::*;
     use crate::Body;
     use crate::contact::Material;
-    use crate::faces::Faces;
     use crate::measured::{AROUND, measure};
     use d2m_bvh::{MeshTree, TriMesh};
+    use d2m_mesh::Faces;
     use glam::{DQuat, DVec3};
     use std::f64::consts::FRAC_PI_4;
     use std::sync::Arc;

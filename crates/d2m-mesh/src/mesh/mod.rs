@@ -17,6 +17,7 @@ mod tests;
 
 pub(crate) use adjacency::{Adjacency, NONE};
 pub(crate) use closedness::{Closedness, part_roots};
+pub use disjoint_sets::DisjointSets;
 pub use error::MeshError;
 #[cfg(feature = "serde")]
 pub(crate) use exact_number::ExactNumber;

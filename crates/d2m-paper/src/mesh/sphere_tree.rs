@@ -2,6 +2,7 @@
 //! sphere of the raw geometry at every node.
 
 use d2m_bvh::{EnclosingSphere, Topology, TriMesh};
+use d2m_mesh::DisjointSets;
 use glam::DVec3;
 use std::collections::{HashMap, HashSet};
 
@@ -278,24 +279,13 @@ fn assign_features(mesh: &TriMesh, topology: &Topology, leaves: &mut [Leaf]) {
 
 /// One vertex of each connected component.
 fn component_vertices(mesh: &TriMesh, topology: &Topology) -> Vec<u32> {
-    let mut parent: Vec<u32> = (0..mesh.vertex_count() as u32).collect();
-    fn root(parent: &mut [u32], mut v: u32) -> u32 {
-        while parent[v as usize] != v {
-            parent[v as usize] = parent[parent[v as usize] as usize];
-            v = parent[v as usize];
-        }
-        v
-    }
+    let mut components = DisjointSets::new(mesh.vertex_count());
     for t in mesh.triangles() {
-        let [a, b, c] = t.map(|v| topology.representative(v));
-        for w in [b, c] {
-            let (r, s) = (root(&mut parent, a), root(&mut parent, w));
-            parent[r.max(s) as usize] = r.min(s);
-        }
+        components.join(t.map(|v| topology.representative(v)));
     }
     let mut seen = HashMap::new();
     for t in mesh.triangles() {
-        let r = root(&mut parent, topology.representative(t[0]));
+        let r = components.root(topology.representative(t[0]));
         seen.entry(r).or_insert(t[0]);
     }
     let mut vertices: Vec<u32> = seen.into_values().collect();

@@ -1,13 +1,27 @@
 //! Which triangles meet at a vertex, and how far flat parts of the surface go on around a point.
 
-use d2m_bvh::TriMesh;
-use d2m_feature::{FeaturePair, closest_weights};
-use d2m_mesh::Simplex;
+use crate::{Simplex, TriMesh};
+use d2m_feature::closest_point;
 use glam::DVec3;
 
-/// Triangles by vertex, and their normals.
-#[derive(Debug)]
-pub(crate) struct Faces {
+/// The triangles at each vertex of a mesh, and their normals: what contacts ask of a surface around closest points. All in the mesh's frame; normals and
+/// distances to rounding, which proves nothing.
+///
+/// Vertices count by their numbers, not by their positions.
+///
+/// ```
+/// use d2m_mesh::{Faces, TriMesh};
+/// use glam::DVec3;
+/// let square = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+/// let mesh = TriMesh::try_new(square, vec![[0, 1, 2], [0, 2, 3]])?;
+/// let faces = Faces::new(&mesh);
+/// assert_eq!(faces.around(&[1]), [0]);
+/// assert_eq!(faces.around(&[0, 2]), [0, 1]);
+/// assert_eq!(faces.nearest(&[1], DVec3::new(0.1, 0.0, -1.0)), Some(-DVec3::Z));
+/// # Ok::<(), d2m_mesh::MeshError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Faces {
     /// Where the triangles of each vertex begin in `triangles`, and where the last ones end.
     starts: Vec<u32>,
     triangles: Vec<u32>,
@@ -16,7 +30,17 @@ pub(crate) struct Faces {
 }
 
 impl Faces {
-    pub(crate) fn new(mesh: &TriMesh) -> Self {
+    /// In time linear in the mesh.
+    ///
+    /// ```
+    /// use d2m_mesh::{Faces, TriMesh};
+    /// use glam::DVec3;
+    /// let mesh = TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]])?;
+    /// assert_eq!(Faces::new(&mesh).around(&[2]), [0]);
+    /// # Ok::<(), d2m_mesh::MeshError>(())
+    /// ```
+    #[must_use]
+    pub fn new(mesh: &TriMesh) -> Self {
         let mut starts = vec![0u32; mesh.vertex_count() + 1];
         for &vertex in mesh.triangles().iter().flatten() {
             starts[vertex as usize + 1] += 1;
@@ -45,8 +69,20 @@ impl Faces {
         &self.triangles[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
     }
 
-    /// The normal, or its opposite, of a triangle at one of these vertices that is nearest to a direction of the mesh frame.
-    pub(crate) fn nearest(&self, vertices: &[u32], direction: DVec3) -> Option<DVec3> {
+    /// The normal, or its opposite, of a triangle at one of these vertices that is nearest to a direction. None: the triangle has no area, or there is none.
+    ///
+    /// ```
+    /// use d2m_mesh::{Faces, TriMesh};
+    /// use glam::DVec3;
+    /// let mesh = TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]])?;
+    /// assert_eq!(Faces::new(&mesh).nearest(&[0], DVec3::new(0.0, 0.1, 1.0)), Some(DVec3::Z));
+    /// # Ok::<(), d2m_mesh::MeshError>(())
+    /// ```
+    ///
+    /// # Panics
+    /// If a vertex is none of the mesh's.
+    #[must_use]
+    pub fn nearest(&self, vertices: &[u32], direction: DVec3) -> Option<DVec3> {
         let normals = vertices.iter().flat_map(|&v| self.at(v)).map(|&t| self.normals[t as usize]);
         let nearest =
             normals.reduce(|m, n| if n.dot(direction).abs() > m.dot(direction).abs() { n } else { m })?;
@@ -55,11 +91,26 @@ impl Faces {
 
     /// How far the flat part of the surface around a point of it, near these vertices, goes on at least, in all directions. Flat is what
     /// faces along this direction, or all against it, up to so much, and the point lies on it, up to `rounding`: not on what faces that way behind
-    /// it, as behind a fold. None: there is no such part. Coordinates of the mesh.
+    /// it, as behind a fold. None: there is no such part. The mesh is the one that this was made of.
     ///
     /// Let the outline of the triangles, the sides that no other of them shares, be r away from the point. A disc of that radius about the point,
     /// which is in one of them, has no point of the outline, so the triangles go on in all of it. Half of it counts.
-    pub(crate) fn flat_around(
+    ///
+    /// ```
+    /// use d2m_mesh::{Faces, TriMesh};
+    /// use glam::DVec3;
+    /// let square = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+    /// let mesh = TriMesh::try_new(square, vec![[0, 1, 2], [0, 2, 3]])?;
+    /// let middle = DVec3::new(0.5, 0.5, 0.0);
+    /// let around = Faces::new(&mesh).flat_around(&mesh, &[0, 2], [middle, DVec3::Z], [1e-9, 1e-12]);
+    /// assert_eq!(around, Some(0.25));
+    /// # Ok::<(), d2m_mesh::MeshError>(())
+    /// ```
+    ///
+    /// # Panics
+    /// If a vertex is none of the mesh's.
+    #[must_use]
+    pub fn flat_around(
         &self,
         mesh: &TriMesh,
         vertices: &[u32],
@@ -80,15 +131,29 @@ impl Faces {
             let room =
                 outline.map(|[from, to]| to_segment(point, [at(from), at(to)])).fold(f64::INFINITY, f64::min);
             let is_on =
-                |&t: &u32| nearest_point(point, &mesh.corners(t as usize)).distance(point) <= rounding;
+                |&t: &u32| closest_point(point, &mesh.corners(t as usize)).distance(point) <= rounding;
             flat.iter().any(is_on).then_some(0.5 * room)
         };
         [1.0, -1.0].into_iter().filter_map(facing).reduce(f64::max)
     }
 
-    /// The triangle at these vertices nearest to a point, of those that face along this direction or against it, up to so much, and a point of it.
-    /// Coordinates of the mesh.
-    pub(crate) fn below(
+    /// The triangle at these vertices nearest to a point, of those that face along this direction or against it, up to so much, and its point
+    /// nearest to that one. The mesh is the one that this was made of.
+    ///
+    /// ```
+    /// use d2m_mesh::{Faces, TriMesh};
+    /// use glam::DVec3;
+    /// let mesh = TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]])?;
+    /// let above = DVec3::new(0.25, 0.25, 3.0);
+    /// let below = Faces::new(&mesh).below(&mesh, &[0], [above, DVec3::Z], 1e-9);
+    /// assert_eq!(below, Some((0, DVec3::new(0.25, 0.25, 0.0))));
+    /// # Ok::<(), d2m_mesh::MeshError>(())
+    /// ```
+    ///
+    /// # Panics
+    /// If a vertex is none of the mesh's.
+    #[must_use]
+    pub fn below(
         &self,
         mesh: &TriMesh,
         vertices: &[u32],
@@ -100,13 +165,25 @@ impl Faces {
             (normal - direction).length().min((normal + direction).length())
         };
         let flat = self.around(vertices).into_iter().filter(|&t| off(t) <= most);
-        let feet = flat.map(|t| (t, nearest_point(point, &mesh.corners(t as usize))));
+        let feet = flat.map(|t| (t, closest_point(point, &mesh.corners(t as usize))));
         let away = |foot: DVec3| foot.distance_squared(point);
         feet.min_by(|(_, x), (_, y)| away(*x).total_cmp(&away(*y)))
     }
 
-    /// The triangles at some vertices, each once.
-    pub(crate) fn around(&self, vertices: &[u32]) -> Vec<u32> {
+    /// The triangles at some vertices, each once, in order.
+    ///
+    /// ```
+    /// use d2m_mesh::{Faces, TriMesh};
+    /// use glam::DVec3;
+    /// let mesh = TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]])?;
+    /// assert_eq!(Faces::new(&mesh).around(&[0, 1]), [0]);
+    /// # Ok::<(), d2m_mesh::MeshError>(())
+    /// ```
+    ///
+    /// # Panics
+    /// If a vertex is none of the mesh's.
+    #[must_use]
+    pub fn around(&self, vertices: &[u32]) -> Vec<u32> {
         let mut triangles: Vec<u32> = vertices.iter().flat_map(|&v| self.at(v)).copied().collect();
         triangles.sort_unstable();
         triangles.dedup();
@@ -118,23 +195,6 @@ impl Faces {
 fn to_segment(point: DVec3, [from, to]: [DVec3; 2]) -> f64 {
     let nearest = Simplex::new(from - point);
     nearest.with(to - point).unwrap_or(nearest).nearest().length()
-}
-
-/// The point of a triangle that is nearest to another one: of the triangle to rounding, the nearest of it by a guess.
-pub(crate) fn nearest_point(point: DVec3, corners: &[DVec3; 3]) -> DVec3 {
-    let [a, b, c] = *corners;
-    let weights = closest_weights(point, corners);
-    a + (b - a) * weights[1] + (c - a) * weights[2]
-}
-
-/// The vertices of the features of A and of B.
-pub(crate) fn vertices_of(feature: FeaturePair, meshes: [&TriMesh; 2]) -> [[u32; 3]; 2] {
-    let face = |body: usize, triangle: u32| meshes[body].triangles()[triangle as usize];
-    match feature {
-        FeaturePair::VertexFace { vertex, face: triangle } => [[vertex; 3], face(1, triangle)],
-        FeaturePair::FaceVertex { face: triangle, vertex } => [face(0, triangle), [vertex; 3]],
-        FeaturePair::EdgeEdge { edge_a: [a, b], edge_b: [c, d] } => [[a, b, b], [c, d, d]],
-    }
 }
 
 #[cfg(test)]
