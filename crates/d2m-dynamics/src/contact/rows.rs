@@ -1,7 +1,7 @@
 //! Which contacts the velocities of a flight have to heed, and how.
 
-use super::ContactPoint;
-use crate::velocity::Velocity;
+use super::{ContactPoint, SolverBody};
+use d2m_feature::FeaturePair;
 use glam::DVec3;
 
 /// What distances contacts keep.
@@ -60,7 +60,12 @@ pub(crate) struct Row {
 /// rate ≥ max(0, (0.45 g − d)/τ + m τ/2)        within it; and what is missing to the gap, a quarter of it a step
 /// rate ≥ p (5/8 min(g, d) − d)/τ + m τ/2       if room is shared: p = 4 min(g, d) over the greatest of these, from 1/4 to 1
 /// ```
-pub(crate) fn select(found: &[&ContactPoint], span: Span, velocity: impl Fn(usize) -> Velocity) -> Vec<Row> {
+pub(crate) fn select<'b>(
+    found: &[&ContactPoint],
+    span: Span,
+    body: impl Fn(usize) -> &'b SolverBody,
+) -> Vec<Row> {
+    let velocity = |i: usize| body(i).velocity;
     let mut rows = Vec::new();
     let widest = found.iter().filter(|c| c.row.is_none()).map(|c| near(c)).fold(0.0, f64::max);
     for (k, contact) in found.iter().enumerate() {
@@ -82,7 +87,7 @@ pub(crate) fn select(found: &[&ContactPoint], span: Span, velocity: impl Fn(usiz
         };
         let curved = 0.5 * tau * (bend(contact.a, contact.arm_a) + bend(contact.b, contact.arm_b));
         // A gap in a step: in a short rest of one, making room at once would be a jerk.
-        let most = gap / span.step;
+        let most = (gap / span.step).max(0.5 * tau * led_into(contact, &body));
         let target = if span.room == Room::Shared {
             curved - share(contact, widest) / tau
         } else if contact.is_expected {
@@ -97,6 +102,27 @@ pub(crate) fn select(found: &[&ContactPoint], span: Span, velocity: impl Fn(usiz
         rows.push(Row { contact: k, target, pushing: target.min(0.0) });
     }
     rows
+}
+
+/// The acceleration with which bodies that follow their motions come closer to what they touch, along the normal and by turning alone: as a drum to
+/// what it carries along, which flies straight. With the rates v of the contact's points, n turning with the body of the face at ω,
+///
+/// ```text
+/// −(2 (ω × n)·(v_b − v_a) + n·(ω_b × (ω_b × r_b) − ω_a × (ω_a × r_a)))
+/// ```
+fn led_into<'b>(contact: &ContactPoint, body: impl Fn(usize) -> &'b SolverBody) -> f64 {
+    let [a, b] = [contact.a, contact.b].map(body);
+    let spin = |body: &SolverBody| if body.inverse_mass == 0.0 { body.velocity.angular } else { DVec3::ZERO };
+    let [of_a, of_b] = [a, b].map(spin);
+    let slips = b.velocity.of_point(contact.arm_b) - a.velocity.of_point(contact.arm_a);
+    let turning = match contact.feature {
+        FeaturePair::FaceVertex { .. } => of_a,
+        FeaturePair::VertexFace { .. } => of_b,
+        FeaturePair::EdgeEdge { .. } => DVec3::ZERO,
+    };
+    let pull = |spin: DVec3, arm: DVec3| spin.cross(spin.cross(arm));
+    -(2.0 * turning.cross(contact.normal).dot(slips)
+        + contact.normal.dot(pull(of_b, contact.arm_b) - pull(of_a, contact.arm_a)))
 }
 
 /// The distance, at most the gap.
@@ -114,6 +140,14 @@ fn share(contact: &ContactPoint, widest: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::contact::point::upright;
+    use crate::velocity::Velocity;
+    use glam::DMat3;
+
+    const STILL: SolverBody = SolverBody {
+        inverse_mass: 0.0,
+        inverse_inertia: DMat3::ZERO,
+        velocity: Velocity { linear: DVec3::ZERO, angular: DVec3::ZERO },
+    };
 
     /// The closest contact closes by a quarter of its share, one half as far as the widest by all of it; what touches or is too close is left as
     /// it is, also where nothing is apart.
@@ -124,10 +158,32 @@ mod tests {
         let targets = |distances: &[f64]| -> Vec<f64> {
             let contacts: Vec<ContactPoint> = distances.iter().map(|&d| at(d)).collect();
             let contacts: Vec<&ContactPoint> = contacts.iter().collect();
-            select(&contacts, span, |_| Velocity::default()).iter().map(|row| row.target).collect()
+            select(&contacts, span, |_| &STILL).iter().map(|row| row.target).collect()
         };
         assert_eq!(targets(&[1.0, 0.5, 0.125, 0.015625]), [-0.375, -0.1875, -0.0234375, -0.00146484375]);
         assert_eq!(targets(&[0.0, 0.0]), [0.0, 0.0]);
         assert_eq!(targets(&[0.5, -0.5]), [-0.1875, 0.1875]);
+    }
+
+    /// A drum comes closer to what it carries along, which flies straight, as their distance does; and no closer to what it slides under.
+    #[test]
+    fn a_drum_leads_into_what_it_carries_along() {
+        let (rate, radius, tau) = (3.0, 2.0, 1e-3);
+        let drum = SolverBody { velocity: Velocity { angular: DVec3::Z * rate, ..STILL.velocity }, ..STILL };
+        let arms = (DVec3::NEG_Y * radius, DVec3::ZERO);
+        let feature = FeaturePair::FaceVertex { face: 0, vertex: 0 };
+        let contact = ContactPoint { feature, arm_a: arms.0, arm_b: arms.1, ..upright([0, 1]) };
+        let of = |linear: DVec3| {
+            let grain =
+                SolverBody { inverse_mass: 1.0, velocity: Velocity { linear, ..STILL.velocity }, ..STILL };
+            led_into(&contact, |i| if i == 0 { &drum } else { &grain })
+        };
+        let carried = DVec3::X * (rate * radius);
+        // From the inside of a circle, along its tangent.
+        let distance = radius - (DVec3::NEG_Y * radius + carried * tau).length();
+        assert!((of(carried) + 2.0 * distance / (tau * tau)).abs() < 1e-4 * of(carried));
+        assert!((of(carried) - rate * rate * radius).abs() < 1e-9);
+        // Its face turns away from what stands still.
+        assert!((of(DVec3::ZERO) + rate * rate * radius).abs() < 1e-9);
     }
 }
