@@ -35,6 +35,8 @@ const OF_SPEED: f64 = 1.0 / 16.0;
 /// from one side may be passed on through so many contacts. And how often that is halved, down to such a flight.
 const PASSED_ON: f64 = 64.0;
 const SHORTENED: u32 = 6;
+/// Halvings of the rest of a step for flights that keep the gap, down to those.
+const KEPT_HALVES: u32 = 16;
 /// And twice more where bodies could not give way without friction either: in the shortest flights bodies at rest use up a quarter of their room, since
 /// solutions are inexact where they have nothing to spare. What friction alone holds would lock for as long as that.
 const SHORTER: u32 = 2;
@@ -225,7 +227,19 @@ impl Problem<'_> {
             Friction::GivesWay if is_possible => return Some(slipping),
             _ => {}
         }
-        let Closing { safe, .. } = closing?;
+        let Closing { safe, rate } = closing?;
+        let widest = self.contacts.iter().filter(|c| c.row.is_none()).map(|c| c.distance).fold(0.0, f64::max);
+        let halves = (1..=KEPT_HALVES).map(|k| (end - now).min(widest / rate) / f64::from(1u32 << k));
+        let has_room = PASSED_ON * safe * rate >= self.options.gap;
+        let kept: Vec<f64> =
+            halves.take_while(|&l| has_room && l > PASSED_ON * safe).map(|l| now + l).collect();
+        let keeps = |until: f64| {
+            let kept = self.attempt(now, until, Room::Kept);
+            Some(kept).filter(|kept| obeys(kept, leaves.usual) && self.fastest(kept) <= leaves.fastest + self.speed())
+        };
+        if let Some(kept) = longest(&kept, keeps) {
+            return Some(kept);
+        }
         let shortened = if is_possible { SHORTENED } else { SHORTENED + SHORTER };
         let lengths = (0..=shortened).map(|k| PASSED_ON * safe / f64::from(1u32 << k));
         let ends = lengths.map(|length| if length < end - now { now + length } else { end });
