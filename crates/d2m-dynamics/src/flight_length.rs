@@ -227,17 +227,8 @@ impl Problem<'_> {
             Friction::GivesWay if is_possible => return Some(slipping),
             _ => {}
         }
-        let Closing { safe, rate } = closing?;
-        let widest = self.contacts.iter().filter(|c| c.row.is_none()).map(|c| c.distance).fold(0.0, f64::max);
-        let halves = (1..=KEPT_HALVES).map(|k| (end - now).min(widest / rate) / f64::from(1u32 << k));
-        let has_room = PASSED_ON * safe * rate >= self.options.gap;
-        let kept: Vec<f64> =
-            halves.take_while(|&l| has_room && l > PASSED_ON * safe).map(|l| now + l).collect();
-        let keeps = |until: f64| {
-            let kept = self.attempt(now, until, Room::Kept);
-            Some(kept).filter(|kept| obeys(kept, leaves.usual) && self.fastest(kept) <= leaves.fastest + self.speed())
-        };
-        if let Some(kept) = longest(&kept, keeps) {
+        let Closing { safe, .. } = closing?;
+        if let Some(kept) = self.kept([now, end], closing?, leaves) {
             return Some(kept);
         }
         let shortened = if is_possible { SHORTENED } else { SHORTENED + SHORTER };
@@ -257,6 +248,25 @@ impl Problem<'_> {
         };
         let usual = found(leaves.usual).filter(|attempt| self.fastest(attempt) <= leaves.fastest);
         usual.or_else(|| found(leaves.most))
+    }
+
+    /// The longest flights that keep the gap, of halves, quarters and so on of the rest of the step, where they are longer than those that would share room:
+    /// what is pushed towards a wall shares none before it gets there. None: too little room is left, or no such flights are found.
+    fn kept(&self, [now, end]: [f64; 2], closing: Closing, leaves: Leaves) -> Option<Attempt> {
+        let shared = PASSED_ON * closing.safe;
+        if shared * closing.rate < self.options.gap {
+            return None;
+        }
+        let contacts = self.contacts.iter().filter(|contact| contact.row.is_none());
+        let widest = contacts.map(|contact| contact.distance).fold(0.0, f64::max);
+        let whole = (end - now).min(widest / closing.rate);
+        let lengths = (1..=KEPT_HALVES).map(|k| whole / f64::from(1u32 << k));
+        let ends: Vec<f64> =
+            lengths.take_while(|&length| length > shared).map(|length| now + length).collect();
+        let keeps = |kept: &Attempt| kept.found.residual <= leaves.most && kept.may_last();
+        let is_slow = |kept: &Attempt| self.fastest(kept) <= leaves.fastest + self.speed();
+        let tried = |until: f64| Some(self.attempt(now, until, Room::Kept));
+        longest(&ends, |until| tried(until).filter(|kept| keeps(kept) && is_slow(kept)))
     }
 
     /// How fast, and for how long, what follows its motion closes in on bodies that stand still. None: nothing does, within the gap or so.

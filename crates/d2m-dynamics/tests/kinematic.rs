@@ -1,6 +1,6 @@
 //! Bodies that follow their motions: within a hundredth of the gap, however fast, or the step says that it cannot be.
 
-use d2m_bvh::MeshTree;
+use d2m_bvh::{MeshTree, TriMesh};
 use d2m_dynamics::{Body, Kind, Segment, Simulation, SimulationError, SimulationOptions, StepError};
 use d2m_motion::{
     Chain, ConstantTwist, Joint, JointKind, JointValue, Keyframes, OutsideDomain, Pose, RigidMotion, Span,
@@ -180,4 +180,46 @@ fn what_starts_close_to_a_ramp_that_moves_stays_on_it() {
         let off = simulation.position(id).distance(place + velocity * simulation.time());
         assert!(off < 0.1 * GAP, "{off} of {apart}");
     }
+}
+
+/// A tube along z about this circle, of so many sides.
+fn tube(sides: u32, inner: f64, outer: f64, half: f64) -> Arc<MeshTree> {
+    let corner = |k: u32, radius: f64, z: f64| {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(sides)).sin_cos();
+        DVec3::new(radius * cos, radius * sin, z)
+    };
+    let section = [(inner, -half), (outer, -half), (outer, half), (inner, half)];
+    let vertices = (0..sides).flat_map(|k| section.map(|(radius, z)| corner(k, radius, z))).collect();
+    let side = |k: u32, j: u32| {
+        let [a, b] = [4 * k + j, 4 * k + (j + 1) % 4];
+        let [c, d] = [4 * ((k + 1) % sides) + j, 4 * ((k + 1) % sides) + (j + 1) % 4];
+        [[a, b, d], [a, d, c]]
+    };
+    let triangles = (0..sides).flat_map(|k| (0..4).flat_map(move |j| side(k, j))).collect();
+    Arc::new(MeshTree::new(TriMesh::try_new(vertices, triangles).unwrap()))
+}
+
+/// A drum carries boxes along, at gaps of a thousandth of what its turning leads into them in a step: they are as far from it as they have to be, and
+/// do not meet it again and again.
+#[test]
+fn what_a_drum_carries_along_has_room_for_its_turning() {
+    let options = SimulationOptions::default().with_gap(1e-5);
+    let mut simulation = Simulation::new(options).unwrap();
+    let motion = ConstantTwist::REST.with_angular_velocity(DVec3::Z * 4.0);
+    let drum = Body::new("drum", tube(24, 1.0, 1.1, 0.5)).with_kind(Kind::Kinematic(Arc::new(motion)));
+    simulation.add(&drum.with_friction(0.6)).unwrap();
+    let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.1&y=0.1&z=0.1").unwrap()));
+    for x in [-0.3, 0.0, 0.3] {
+        let place = DVec3::new(x, -0.8, 0.0);
+        let body = Body::new(format!("box at {x}"), Arc::clone(&cube)).with_friction(0.6);
+        simulation.add(&body.with_position(place)).unwrap();
+    }
+    let (mut events, mut skipped) = (0, 0.0);
+    for _ in 0..60 {
+        let report = simulation.step().unwrap();
+        events += report.events;
+        skipped += report.segments.iter().map(|segment| segment.skipped).sum::<f64>();
+    }
+    assert_eq!(skipped, 0.0);
+    assert!(events < 300, "{events}");
 }

@@ -505,3 +505,28 @@ fn stones_that_are_wedged_out_are_not_thrown() {
         }
     }
 }
+
+/// A box that a paddle pushes against a wall, at a gap of a hundred-thousandth: it stays away from the paddle by the gap until it meets the wall, and is
+/// crushed there, not before.
+#[test]
+fn what_is_pushed_against_a_wall_is_crushed_there() {
+    let mut simulation = Simulation::new(SimulationOptions::default().with_gap(1e-5)).unwrap();
+    simulation.add(&slab(1.0).with_friction(0.2)).unwrap();
+    let half = "box?x=0.2&y=0.2&z=0.2";
+    simulation
+        .add(&Body::new("box", tree(half)).with_position(DVec3::Y * 0.2001).with_friction(0.2))
+        .unwrap();
+    let wall = Body::new("wall", tree(half)).with_position(DVec3::new(1.0, 0.2001, 0.0));
+    simulation.add(&wall.with_kind(Kind::Static)).unwrap();
+    let paddle = pushed("paddle", half, DVec3::new(-0.6, 0.2001, 0.0), DVec3::X * 1.3);
+    simulation.add(&paddle).unwrap();
+    let error = loop {
+        match simulation.step() {
+            Ok(report) => assert!(report.segments.iter().all(|segment| segment.skipped == 0.0)),
+            Err(error) => break error,
+        }
+    };
+    let StepError::Crushed { time, .. } = error else { panic!("{error:?}") };
+    let end = 0.8 / 1.3;
+    assert!(time > end - 1e-6 && time <= end, "{time}, {end}");
+}

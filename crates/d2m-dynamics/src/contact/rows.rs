@@ -60,6 +60,8 @@ pub(crate) struct Row {
 /// rate ≥ max(0, (0.45 g − d)/τ + m τ/2)        within it; and what is missing to the gap, a quarter of it a step
 /// rate ≥ p (5/8 min(g, d) − d)/τ + m τ/2       if room is shared: p = 4 min(g, d) over the greatest of these, from 1/4 to 1
 /// ```
+///
+/// The first two ask for no more than a gap in a step, or m τ/2 where bodies turn into each other.
 pub(crate) fn select<'b>(
     found: &[&ContactPoint],
     span: Span,
@@ -86,8 +88,9 @@ pub(crate) fn select<'b>(
             omega.cross(contact.normal).length() * omega.length() * arm.length()
         };
         let curved = 0.5 * tau * (bend(contact.a, contact.arm_a) + bend(contact.b, contact.arm_b));
-        // A gap in a step: in a short rest of one, making room at once would be a jerk.
-        let most = (gap / span.step).max(0.5 * tau * led_into(contact, &body));
+        // A gap in a step: in a short rest of one, making room at once would be a jerk. But what bodies turn into is made room for in any case.
+        let is_led = led_into(contact, &body) > 0.0;
+        let most = if is_led { (gap / span.step).max(curved) } else { gap / span.step };
         let target = if span.room == Room::Shared {
             curved - share(contact, widest) / tau
         } else if contact.is_expected {
@@ -104,16 +107,15 @@ pub(crate) fn select<'b>(
     rows
 }
 
-/// The acceleration with which bodies that follow their motions come closer to what they touch, along the normal and by turning alone: as a drum to
-/// what it carries along, which flies straight. With the rates v of the contact's points, n turning with the body of the face at ω,
+/// The acceleration with which bodies come closer along the normal as they turn, while their centers fly straight: as a drum does to what it carries
+/// along. With the rates v of the contact's points, and n turning with the body of the face at ω,
 ///
 /// ```text
 /// −(2 (ω × n)·(v_b − v_a) + n·(ω_b × (ω_b × r_b) − ω_a × (ω_a × r_a)))
 /// ```
 fn led_into<'b>(contact: &ContactPoint, body: impl Fn(usize) -> &'b SolverBody) -> f64 {
     let [a, b] = [contact.a, contact.b].map(body);
-    let spin = |body: &SolverBody| if body.inverse_mass == 0.0 { body.velocity.angular } else { DVec3::ZERO };
-    let [of_a, of_b] = [a, b].map(spin);
+    let [of_a, of_b] = [a, b].map(|body| body.velocity.angular);
     let slips = b.velocity.of_point(contact.arm_b) - a.velocity.of_point(contact.arm_a);
     let turning = match contact.feature {
         FeaturePair::FaceVertex { .. } => of_a,
