@@ -1,6 +1,7 @@
 //! Which contacts the velocities of a flight have to heed, and how.
 
 use super::{ContactPoint, SolverBody};
+use crate::velocity::Velocity;
 use d2m_feature::FeaturePair;
 use glam::DVec3;
 
@@ -69,6 +70,9 @@ pub(crate) fn select<'b>(
 ) -> Vec<Row> {
     let velocity = |i: usize| body(i).velocity;
     let mut rows = Vec::new();
+    // The fastest spin of what impulses do not move.
+    let spin = |i: usize| if body(i).inverse_mass > 0.0 { 0.0 } else { velocity(i).angular.length() };
+    let drive = found.iter().flat_map(|c| [c.a, c.b]).map(spin).fold(0.0, f64::max);
     let widest = found.iter().filter(|c| c.row.is_none()).map(|c| near(c)).fold(0.0, f64::max);
     for (k, contact) in found.iter().enumerate() {
         if let Some(row) = contact.row {
@@ -83,14 +87,14 @@ pub(crate) fn select<'b>(
         if closing > slow && !hit && !contact.is_expected {
             continue;
         }
-        let bend = |body: usize, arm: DVec3| {
-            let omega = velocity(body).angular;
-            omega.cross(contact.normal).length() * omega.length() * arm.length()
-        };
-        let curved = 0.5 * tau * (bend(contact.a, contact.arm_a) + bend(contact.b, contact.arm_b));
-        // A gap in a step: in a short rest of one, making room at once would be a jerk. But what bodies turn into is made room for in any case.
-        let is_led = led_into(contact, &body) > 0.0;
-        let most = if is_led { (gap / span.step).max(curved) } else { gap / span.step };
+        let spins = [contact.a, contact.b].map(|i| velocity(i).angular);
+        let curved = 0.5 * tau * bend(contact, spins);
+        // A gap in a step: in a short rest of one, making room at once would be a jerk. But there is room for what drives turn, and turn into, in any
+        // case: not for other spins, which what is made with impulses could raise without end.
+        let carried = spins.map(|spin| spin.clamp_length_max(drive));
+        let led =
+            if led_into(contact, carried, velocity) > 0.0 { 0.5 * tau * bend(contact, carried) } else { 0.0 };
+        let most = led.max(gap / span.step);
         let target = if span.room == Room::Shared {
             curved - share(contact, widest) / tau
         } else if contact.is_expected {
@@ -107,16 +111,21 @@ pub(crate) fn select<'b>(
     rows
 }
 
-/// The acceleration with which bodies come closer along the normal as they turn, while their centers fly straight: as a drum does to what it carries
+/// A bound on the acceleration along the normal by these spins of the two bodies.
+fn bend(contact: &ContactPoint, spins: [DVec3; 2]) -> f64 {
+    let of = |spin: DVec3, arm: DVec3| spin.cross(contact.normal).length() * spin.length() * arm.length();
+    of(spins[0], contact.arm_a) + of(spins[1], contact.arm_b)
+}
+
+/// The acceleration with which bodies with these spins come closer along the normal while their centers fly straight: as a drum does to what it carries
 /// along. With the rates v of the contact's points, and n turning with the body of the face at ω,
 ///
 /// ```text
 /// −(2 (ω × n)·(v_b − v_a) + n·(ω_b × (ω_b × r_b) − ω_a × (ω_a × r_a)))
 /// ```
-fn led_into<'b>(contact: &ContactPoint, body: impl Fn(usize) -> &'b SolverBody) -> f64 {
-    let [a, b] = [contact.a, contact.b].map(body);
-    let [of_a, of_b] = [a, b].map(|body| body.velocity.angular);
-    let slips = b.velocity.of_point(contact.arm_b) - a.velocity.of_point(contact.arm_a);
+fn led_into(contact: &ContactPoint, [of_a, of_b]: [DVec3; 2], velocity: impl Fn(usize) -> Velocity) -> f64 {
+    let [a, b] = [contact.a, contact.b].map(velocity);
+    let slips = b.of_point(contact.arm_b) - a.of_point(contact.arm_a);
     let turning = match contact.feature {
         FeaturePair::FaceVertex { .. } => of_a,
         FeaturePair::VertexFace { .. } => of_b,
@@ -171,14 +180,14 @@ mod tests {
     #[test]
     fn a_drum_leads_into_what_it_carries_along() {
         let (rate, radius, tau) = (3.0, 2.0, 1e-3);
-        let drum = SolverBody { velocity: Velocity { angular: DVec3::Z * rate, ..STILL.velocity }, ..STILL };
-        let arms = (DVec3::NEG_Y * radius, DVec3::ZERO);
+        let spin = DVec3::Z * rate;
         let feature = FeaturePair::FaceVertex { face: 0, vertex: 0 };
-        let contact = ContactPoint { feature, arm_a: arms.0, arm_b: arms.1, ..upright([0, 1]) };
+        let contact =
+            ContactPoint { feature, arm_a: DVec3::NEG_Y * radius, arm_b: DVec3::ZERO, ..upright([0, 1]) };
         let of = |linear: DVec3| {
-            let grain =
-                SolverBody { inverse_mass: 1.0, velocity: Velocity { linear, ..STILL.velocity }, ..STILL };
-            led_into(&contact, |i| if i == 0 { &drum } else { &grain })
+            let drum = Velocity { linear: DVec3::ZERO, angular: spin };
+            let grain = Velocity { linear, angular: DVec3::ZERO };
+            led_into(&contact, [spin, DVec3::ZERO], |i| [drum, grain][i])
         };
         let carried = DVec3::X * (rate * radius);
         // From the inside of a circle, along its tangent.
@@ -187,5 +196,31 @@ mod tests {
         assert!((of(carried) - rate * rate * radius).abs() < 1e-9);
         // Its face turns away from what stands still.
         assert!((of(DVec3::ZERO) + rate * rate * radius).abs() < 1e-9);
+    }
+
+    /// Room for turning of no more than a gap a step, and for what a drum turns: not for what turns faster in it, which would make it faster still.
+    #[test]
+    fn room_is_made_for_what_drives_turn() {
+        let body = |inverse_mass: f64, spin: f64, speed: f64| SolverBody {
+            inverse_mass,
+            velocity: Velocity { linear: DVec3::X * speed, angular: DVec3::Z * spin },
+            ..STILL
+        };
+        let drum = body(0.0, 3.0, 0.0);
+        // Its inner face, and the vertex of something that turns alike.
+        let feature = FeaturePair::FaceVertex { face: 0, vertex: 0 };
+        let touching = ContactPoint { feature, distance: KEPT, arm_a: DVec3::NEG_Y, ..upright([0, 1]) };
+        let span = Span { remaining: 0.01, step: 1e3, resting_speed: 1.0, room: Room::Kept };
+        let target = |bodies: [SolverBody; 2]| select(&[&touching], span, |i| &bodies[i])[0].target;
+        for (bodies, expected) in [
+            // Carried along, turning by itself and standing still.
+            ([drum, body(1.0, 3.0, 1.5)], 0.5 * 0.01 * 9.0 * 1.5),
+            ([drum, body(1.0, 300.0, 0.0)], 0.5 * 0.01 * 9.0 * 1.5),
+            ([drum, body(1.0, 0.0, 0.0)], 1e-3),
+            ([body(1.0, 300.0, 0.0), body(1.0, 300.0, 0.0)], 1e-3),
+        ] {
+            let target = target(bodies);
+            assert!((target - expected).abs() < 1e-12, "{target} {expected}");
+        }
     }
 }
