@@ -28,6 +28,18 @@ pub(super) fn cases(cases: &mut Vec<Case>, seed: u64) {
             }
         }
     }
+    // Gaps of a thousandth of what turning leads into them in a step.
+    for (gap, step) in [(1e-4, 0.01), (1e-5, 0.01), (1e-3, 0.1)] {
+        let options = SimulationOptions::default().with_gap(gap).with_step(step);
+        for rate in [3.0, 8.0] {
+            for (count, how, is_round) in [(4, "boxes", false), (12, "boxes", false), (12, "pebbles", true)] {
+                let build = move |scene| drum(scene, seed, rate, count, is_round);
+                let variant =
+                    format!("at {rate} rad/s with {count} {how}, a gap of {gap:.0e}, steps of {step}");
+                cases.push(Case::new("drum", variant, 1.0, build).with_options(options));
+            }
+        }
+    }
     for rate in [1.0, 4.0] {
         for count in [6, 16, 40] {
             let build = move |scene| stirrer(scene, seed, rate, count);
@@ -58,6 +70,12 @@ pub(super) fn cases(cases: &mut Vec<Case>, seed: u64) {
     for variant in 0..2 * CORNERED {
         let build = move |scene| paddle(scene, seed, variant);
         cases.push(Case::new("paddle", format!("variant {variant}"), 2.0, build));
+    }
+    for variant in CORNERED..2 * CORNERED {
+        let build = move |scene| paddle(scene, seed, variant);
+        let fine = SimulationOptions::default().with_gap(1e-5);
+        let name = format!("variant {variant} at a gap of 1e-5");
+        cases.push(Case::new("paddle", name, 2.0, build).with_options(fine));
     }
     let fine = SimulationOptions::default().with_gap(2e-4);
     for rate in [10.0, 100.0] {

@@ -4,6 +4,7 @@ mod driven;
 mod friction;
 mod hits;
 mod law;
+mod mechanisms;
 mod outcome;
 mod proven;
 mod solids;
@@ -33,6 +34,7 @@ fn cases(seed: u64) -> Vec<Case> {
     driven::cases(&mut cases, seed);
     hits::cases(&mut cases, seed);
     chains::cases(&mut cases);
+    mechanisms::cases(&mut cases);
     cases
 }
 
