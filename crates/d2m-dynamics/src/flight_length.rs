@@ -254,11 +254,11 @@ impl Problem<'_> {
     /// what is pushed towards a wall shares none before it gets there. None: too little room is left, or no such flights are found.
     fn kept(&self, [now, end]: [f64; 2], closing: Closing, leaves: Leaves) -> Option<Attempt> {
         let shared = PASSED_ON * closing.safe;
-        if shared * closing.rate < self.options.gap {
-            return None;
-        }
         let contacts = self.contacts.iter().filter(|contact| contact.row.is_none());
         let widest = contacts.map(|contact| contact.distance).fold(0.0, f64::max);
+        if widest <= NEAR * self.options.gap {
+            return None;
+        }
         let whole = (end - now).min(widest / closing.rate);
         let lengths = (1..=KEPT_HALVES).map(|k| whole / f64::from(1u32 << k));
         let ends: Vec<f64> =
