@@ -1,10 +1,13 @@
-//! Motions that are followed by fitted twists, at times where the numbers for time are far apart.
+//! Motions that are followed by fitted twists, at times where the numbers for time are far apart, and in other units of time.
 
 use d2m_bvh::{
     Evidence, MeshTree, Moving, Posed, QueryOptions, Solid, TimeOfContact, TriMesh, Window, distance,
     time_of_contact,
 };
-use d2m_motion::{ConstantTwist, Pose, RigidMotion, Spline, SplineDegree};
+use d2m_motion::{
+    Chain, Composed, ConstantTwist, Joint, JointKind, JointValue, Pose, Retimed, RigidMotion, Spline,
+    SplineDegree,
+};
 use d2m_testing::Surface;
 use glam::{DQuat, DVec3, dvec3};
 
@@ -40,4 +43,37 @@ fn what_is_left_is_covered() {
         covered += u32::from(contact.tolerance > 1e-9);
     }
     assert!(covered > 0, "no scene needs it");
+}
+
+/// A body that falls from rest, in units of time whose square is no number: it is nowhere late, and its acceleration is not left out.
+#[test]
+fn what_falls_is_met_in_any_unit_of_time() {
+    let cube = Surface::cube(0.5);
+    for (meter, second) in [(0, 0), (-90, -540), (-150, -570), (-60, 400), (0, 450)] {
+        let (meter, second) = (2f64.powi(meter), 2f64.powi(second));
+        let tree = MeshTree::new(cube.clone().map(|p| p * meter).into_mesh(TriMesh::try_new));
+        let fall = -2.0 * (meter / second) / second;
+        let value = JointValue::try_polynomial(vec![0.0, 0.0, fall]).unwrap();
+        let down = JointKind::Prismatic { axis: DVec3::Z, value };
+        let falling = |height: f64| {
+            let place = dvec3(0.125, 0.25, height) * meter;
+            Chain::try_new(vec![Joint::try_new(place, DQuat::IDENTITY, down.clone()).unwrap()]).unwrap()
+        };
+        let carried = ConstantTwist::REST.with_position(DVec3::Z * meter);
+        let motions: [Box<dyn RigidMotion>; 3] = [
+            Box::new(falling(2.0)),
+            Box::new(Composed::new(carried, falling(1.0))),
+            Box::new(Retimed::try_new(falling(2.0), 1.0, 0.0).unwrap()),
+        ];
+        // From 1 above the other one.
+        let met = 0.5_f64.sqrt();
+        for motion in motions {
+            let bodies = (Moving::new(&tree, &*motion), Moving::new(&tree, &ConstantTwist::REST));
+            let window = Window::try_new(0.0, second).unwrap();
+            let found = time_of_contact(bodies.0, bodies.1, window, &QueryOptions::default()).unwrap();
+            let contact = found.contact().expect("they meet");
+            let time = contact.time_lo / second;
+            assert!(time <= met && time > met - 1e-9, "{meter:e} {second:e}: {contact:?}");
+        }
+    }
 }

@@ -79,7 +79,9 @@ impl Ball {
         }
         let center = self.center * factor;
         let known = times_up(radius, self.bound_length());
-        Self::new(center, up(known + times_up(self.radius, factor.abs()) + rounding(center, UNIT)))
+        // Of what underflows to zero something is lost, too.
+        let rounding = times_up(UNIT, length_up(center).max(f64::MIN_POSITIVE));
+        Self::new(center, up(known + times_up(self.radius, factor.abs()) + rounding))
     }
 
     /// Encloses the cross products.
@@ -92,7 +94,7 @@ impl Ball {
         }
         let (long, wide) = (length_up(self.center), length_up(other.center));
         let spread = times_up(self.radius, up(wide + other.radius)) + times_up(long, other.radius);
-        Self::new(self.center.cross(other.center), up(spread + times_up(4.0 * UNIT * long, wide)))
+        Self::new(self.center.cross(other.center), up(spread + times_up(4.0 * UNIT, times_up(long, wide))))
     }
 
     /// Encloses the vectors turned by every rotation within `radius` (operator norm) of the matrix.
@@ -152,11 +154,6 @@ pub(crate) fn up(x: f64) -> f64 {
 #[inline]
 pub(crate) fn product_radius(outer: f64, inner: f64) -> f64 {
     up(outer * (1.0 + inner) + inner + 10.0 * UNIT * (1.0 + outer) * (1.0 + inner))
-}
-
-/// The rounding of a vector in units of `unit`, and what underflow may take; none of zero.
-fn rounding(v: DVec3, unit: f64) -> f64 {
-    times_up(unit, length_up(v))
 }
 
 /// Product of non-negative numbers, rounded up also where it underflows; zero times anything is zero.

@@ -194,7 +194,7 @@ impl<'f> Turned<'f> {
             _ => {
                 let rate = (fit.angular_rate - kept(fit.state.angular, bend)).bound_length();
                 let turned = fit.reach
-                    * (fit.rotation_radius + half * fit.state.angular_radius + 0.5 * half * half * rate);
+                    * (fit.rotation_radius + half * fit.state.angular_radius + 0.5 * half * (half * rate));
                 self.known[which] = Some((bend, turned));
                 turned
             }
@@ -211,7 +211,8 @@ fn kept(speed: DVec3, bend: f64) -> Ball {
 fn deviation([a, b]: [&Fit; 2], half: f64, bend: f64, [turned_a, turned_b]: [f64; 2]) -> f64 {
     let relative = (Ball::point(a.state.linear) - Ball::point(b.state.linear)).times(bend, 0.0);
     let along = (a.acceleration - b.acceleration - relative).bound_length();
-    let moved = half * (a.state.linear_radius + b.state.linear_radius) + 0.5 * half * half * along;
+    // The square of a short time alone may be lost to underflow.
+    let moved = half * (a.state.linear_radius + b.state.linear_radius) + 0.5 * half * (half * along);
     let deviation = a.state.position_radius + b.state.position_radius + moved + turned_a + turned_b;
     // What underflow may take is less than the smallest normal number.
     deviation * UP + f64::MIN_POSITIVE
@@ -329,6 +330,32 @@ mod tests {
             let fitted = FittedTwists::new(&bodies, Interval::new(times[0], times[1]), DVec3::ZERO).unwrap();
             assert_eq!(fitted.clock.middle, times[0]);
             assert!(fitted.twists[0].linear_velocity().x > 9.0 / u, "{:?}", fitted.twists[0]);
+        }
+    }
+
+    /// In units of time whose square is no number a deviation is the same part of the unit of length.
+    #[test]
+    fn deviations_are_the_same_in_any_unit_of_time() {
+        let deviation = |meter: i32, second: i32| {
+            let (meter, second) = (2f64.powi(meter), 2f64.powi(second));
+            let gained = meter / second / second;
+            let motion = Chain::try_new(vec![
+                sliding(DVec3::ZERO, DVec3::Z, &[0.0, meter / second]),
+                sliding(DVec3::ZERO, DVec3::X, &[0.0, 0.0, gained]),
+            ])
+            .unwrap();
+            let still = ConstantTwist::REST;
+            let ball = |motion| MovingBall { motion, center: DVec3::ZERO, radius: meter };
+            let bodies: [MovingBall<'_>; 2] = [ball(&motion), ball(&still)];
+            let fitted = FittedTwists::new(&bodies, Interval::new(0.0, second), DVec3::ZERO).unwrap();
+            fitted.deviation / meter
+        };
+        let usual = deviation(0, 0);
+        assert!(usual > 0.25);
+        for (meter, second) in [(-90, -540), (-150, -570), (0, 450), (40, -470)] {
+            let found = deviation(meter, second);
+            // Lengths of very large and very small vectors are known to √3.
+            assert!((1.0 - 1e-12..1.74).contains(&(found / usual)), "{meter} {second}: {found:e} {usual:e}");
         }
     }
 

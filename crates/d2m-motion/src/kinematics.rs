@@ -254,6 +254,30 @@ impl Kinematics {
         Self { rotation: self.rotation, rotation_radius: self.rotation_radius, ..self.then(&shift) }
     }
 
+    /// The same set on a clock of which a unit is, within `error`, `unit` of this one's: velocities times that number, accelerations times its
+    /// square. A negative unit runs backwards. Of a radius that is negative or no number nothing is known.
+    ///
+    /// ```
+    /// use d2m_motion::{Ball, Kinematics};
+    /// use glam::DVec3;
+    /// let falling = Kinematics { linear_rate: Ball::point(DVec3::Z * -10.0), linear: Ball::point(DVec3::X), ..Kinematics::REST };
+    /// let slowly = falling.in_unit_of_time(0.1, 0.0); // of a tenth of a second
+    /// assert!((slowly.linear.center - DVec3::X * 0.1).length() <= slowly.linear.radius);
+    /// assert!((slowly.linear_rate.center - DVec3::Z * -0.1).length() <= slowly.linear_rate.radius);
+    /// assert!(slowly.linear_rate.radius < 1e-15);
+    /// ```
+    #[must_use]
+    pub fn in_unit_of_time(&self, unit: f64, error: f64) -> Self {
+        let once = |ball: Ball| if ball.radius >= 0.0 { ball.times(unit, error) } else { Ball::ANY };
+        Self {
+            linear: once(self.linear),
+            angular: once(self.angular),
+            linear_rate: once(once(self.linear_rate)),
+            angular_rate: once(once(self.angular_rate)),
+            ..*self
+        }
+    }
+
     /// A set that contains this one and another (of the same reference point).
     #[must_use]
     pub fn hull(&self, other: &Self) -> Self {

@@ -76,7 +76,16 @@ impl<M: RigidMotion> Retimed<M> {
 
     /// The given motion's time. It is in its domain wherever this motion is defined.
     fn time(&self, t: Interval) -> Interval {
-        let time = t * self.rate + Interval::point(self.offset) + Interval::point(self.offset_low);
+        let [start, end] = [t.lo(), t.hi()].map(|t| self.inner_time(t));
+        let [first, last] = if self.rate > 0.0 { [start, end] } else { [end, start] };
+        let low = ((first.center + first.rest).next_down() - first.error).next_down();
+        let high = ((last.center + last.rest).next_up() + last.error).next_up();
+        // Products of intervals are wider by 2⁻⁵⁰⁰, which is long where all times are short; but they know numbers of any size.
+        let time = if (high - low).is_finite() && low <= high {
+            Interval::new(low, high)
+        } else {
+            t * self.rate + Interval::point(self.offset) + Interval::point(self.offset_low)
+        };
         let inside = time.intersection(self.motion.domain());
         if inside.is_empty() { time } else { inside }
     }
@@ -135,13 +144,15 @@ impl<M: RigidMotion> Retimed<M> {
         let (bend, turn_rate) = (around.linear_rate.bound_length(), around.angular_rate.bound_length());
         let speed = around.linear.bound_length().max(here.linear.bound_length());
         let turn = around.angular.bound_length().max(here.angular.bound_length());
-        let square = 0.5 * reach * reach;
+        // Squares of rates or of times alone may be no numbers.
+        let (bent, turned) = (0.5 * reach * (reach * bend), reach * turn);
         let moved = here.linear.center * rest;
         let tail = here.position_tail + moved;
         let position_radius = here.position.radius
             + reach * here.linear.radius
             + error * speed
-            + square * bend
+            + bent
+            + f64::MIN_POSITIVE
             + 4.0 * UNIT * (length_up(moved) + length_up(tail));
         let changed = |speed: Ball, by: Ball| {
             let center = speed.center + by.center * rest;
@@ -155,11 +166,11 @@ impl<M: RigidMotion> Retimed<M> {
         };
         let rotation = DMat3::from_cols(column(0), column(1), column(2));
         // Entries round by less than a unit of numbers up to 1 and of 4 of d|ω|; nine of them.
-        let rotation_radius = here.rotation_radius * (1.0 + reach * turn)
+        let rotation_radius = here.rotation_radius * (1.0 + turned)
             + reach * here.angular.radius
             + error * turn * (1.0 + here.rotation_radius)
-            + square * (turn_rate + turn * turn)
-            + 16.0 * UNIT * (1.0 + reach * turn);
+            + 0.5 * (reach * (reach * turn_rate) + turned * turned)
+            + 16.0 * UNIT * (1.0 + turned);
         Kinematics {
             position: Ball::new(here.position.center, up(position_radius)),
             position_tail: if tail.is_finite() { tail } else { DVec3::ZERO },
@@ -230,14 +241,7 @@ impl<M: RigidMotion> RigidMotion for Retimed<M> {
         } else {
             self.motion.enclose_kinematics(self.time(t))
         };
-        let once = |ball: Ball| ball.times(self.rate, 0.0);
-        Kinematics {
-            linear: once(inner.linear),
-            angular: once(inner.angular),
-            linear_rate: once(once(inner.linear_rate)),
-            angular_rate: once(once(inner.angular_rate)),
-            ..inner
-        }
+        inner.in_unit_of_time(self.rate, 0.0)
     }
 }
 
@@ -340,6 +344,32 @@ mod tests {
             let (pose, _) = motion.pose_and_twist(t);
             assert!((pose.translation.x - wanted).abs() < 1e-15 * (1.0 + wanted.abs()) * 4.0);
         }
+    }
+
+    /// In any unit of time the state is known as well, and what moves by less than the least number in a unit of time is not at rest.
+    #[test]
+    fn states_are_as_sharp_in_any_unit_of_time() {
+        let wide = |second: i32| {
+            let second = 2f64.powi(second);
+            let twist = ConstantTwist::REST
+                .with_linear_velocity(DVec3::X * (0.3 / second))
+                .with_angular_velocity(DVec3::Y * (0.1 / second));
+            let motion = Retimed::try_new(twist, -1.5, 0.25 * second).unwrap();
+            let state = motion.enclose_state(0.7 * second);
+            let over = motion.enclose_kinematics(Interval::new(0.6 * second, 0.7 * second));
+            [state.position_radius, state.rotation_radius, over.position.radius, over.rotation_radius]
+        };
+        let usual = wide(0);
+        for second in [-900, -600, -100, 100, 600, 900] {
+            let found = wide(second);
+            for (found, usual) in found.into_iter().zip(usual) {
+                assert!(found <= 2.0 * usual, "{second}: {found:e} {usual:e}");
+            }
+        }
+        let least = 2f64.powi(-565);
+        let slow = ConstantTwist::REST.with_linear_velocity(DVec3::X * least);
+        let state = Retimed::try_new(slow, least, 0.0).unwrap().enclose_state(1.0);
+        assert!(state.linear == DVec3::ZERO && state.linear_radius > 0.0, "{state:?}");
     }
 
     #[test]

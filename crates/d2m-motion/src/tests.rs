@@ -1,6 +1,9 @@
 use crate::double_double_trig::sin_cos_double;
 use crate::sin_cos::{LARGEST_ANGLE, sin_cos, sin_cos_two};
-use crate::{ConstantTwist, Keyframes, MotionError, Pose, RigidMotion, ScrewMotion, Span, Twist};
+use crate::{
+    Ball, ConstantTwist, Keyframes, Kinematics, MotionError, Pose, RigidMotion, ScrewMotion, Span, Twist,
+    length,
+};
 use core::ops::{Add, Mul, Sub};
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_lanes::{DoubleDouble, F64x2};
@@ -370,5 +373,57 @@ fn splines_in_json() {
         let found =
             serde_json::from_str::<AnyMotion>(&text).err().map_or(String::new(), |error| error.to_string());
         assert!(found.contains(reason) && found.is_empty() == reason.is_empty(), "{to}: {found}");
+    }
+}
+
+/// What underflows to zero is not exactly zero, and rounding of what is multiplied by the least numbers counts.
+#[test]
+fn balls_hold_what_underflows() {
+    let (slow, pace) = (2f64.powi(-565), 2f64.powi(-565));
+    let found = Ball::point(DVec3::new(5.0 * slow, 0.0, 0.0)).times(pace, 0.0);
+    assert!(found.center == DVec3::ZERO && found.radius > 0.0, "{found:?}");
+    assert_eq!(Ball::ZERO.times(pace, 0.0), Ball::ZERO);
+    // 3·2⁻¹⁰⁷⁴ times 1/3 of 2¹⁰⁰⁰, and of its neighbor: products that are no doubles.
+    let least = DVec3::new(0.0, 0.0, 3.0 * f64::from_bits(1));
+    for far in [2f64.powi(1000) / 3.0, 2f64.powi(1000) * 0.7] {
+        let found = Ball::point(least).cross(Ball::point(DVec3::X * far));
+        assert!(found.radius >= 0.25 * f64::EPSILON * found.center.length(), "{found:?}");
+    }
+}
+
+/// Velocities by another clock, and accelerations, are in their balls; a negative radius says nothing.
+#[test]
+fn kinematics_are_enclosed_in_any_unit_of_time() {
+    let mut random = Random(31);
+    for round in 0..2000 {
+        let size = 2f64.powi([0, -500, 500, -900][round % 4]);
+        let unit = random.signed() * 2f64.powi([0, -530, 250, -30][round / 4 % 4]);
+        let error = if round % 3 == 0 { 0.0 } else { unit.abs() * 1e-3 };
+        let mut ball = || Ball::new(random.vector() * size, random.unit() * size * 1e-2);
+        let known = Kinematics {
+            linear: ball(),
+            angular: ball(),
+            linear_rate: ball(),
+            angular_rate: ball(),
+            ..Kinematics::REST
+        };
+        let found = known.in_unit_of_time(unit, error);
+        assert_eq!((found.position, found.rotation), (known.position, known.rotation));
+        let pairs = [
+            (known.linear, found.linear, 1),
+            (known.angular, found.angular, 1),
+            (known.linear_rate, found.linear_rate, 2),
+            (known.angular_rate, found.angular_rate, 2),
+        ];
+        for (before, after, power) in pairs {
+            let by = unit + error * random.signed();
+            let vector = before.center + random.ball() * before.radius;
+            // In a unit near one: exact.
+            let wanted = (0..power).fold(vector / size, |v, _| v * by);
+            let most = after.radius / size * (1.0 + 1e-9) + 1e-15 * length(wanted) + f64::MIN_POSITIVE;
+            assert!(length(after.center / size - wanted) <= most, "{round}: {before:?} {unit:e} {after:?}");
+        }
+        let wrong = Kinematics { linear: Ball { center: DVec3::X, radius: -1e-3 }, ..Kinematics::REST };
+        assert_eq!(wrong.in_unit_of_time(1.0, 0.0).linear.radius, f64::INFINITY);
     }
 }

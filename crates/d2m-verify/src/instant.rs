@@ -3,7 +3,7 @@ use crate::closest::closest;
 use crate::directions::{Axis, Direction, between, faces_and_sides};
 use crate::{Body, TimeSpan};
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
-use d2m_motion::{Ball, CertifiedState, Kinematics};
+use d2m_motion::{CertifiedState, Kinematics};
 use glam::{DMat3, DVec3};
 
 /// A radius of a ball. Of what is no radius nothing is known: a ball without a vector would prove everything.
@@ -26,18 +26,9 @@ pub(crate) fn rotations(m: DMat3, radius: f64) -> IntervalMat3 {
 pub(crate) fn kinematics(body: &Body<'_>, span: TimeSpan) -> Kinematics {
     let times = Interval::point(span.from).hull(Interval::point(span.to));
     let over = body.motion.enclose_kinematics(times);
-    // Rounded by less than half of this part.
     let length = span.to - span.from;
-    let in_span =
-        |ball: Ball| Ball::new(ball.center, known(ball.radius)).times(length, f64::EPSILON * length);
-    Kinematics {
-        linear: in_span(over.linear),
-        angular: in_span(over.angular),
-        linear_rate: in_span(in_span(over.linear_rate)),
-        angular_rate: in_span(in_span(over.angular_rate)),
-        ..over
-    }
-    .following(body.mesh.center)
+    // Rounded by less than half of this part.
+    over.in_unit_of_time(length, f64::EPSILON * length).following(body.mesh.center)
 }
 
 /// A part of a body is all that is between these points (or boxes), from its mesh's center in body axes.

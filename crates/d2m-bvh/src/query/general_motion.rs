@@ -344,8 +344,7 @@ impl<'a> Advance<'a> {
                 let tolerance = self.tolerance.max(rounding_tolerance(&fitted));
                 let enough = largest.max(SMALL_PART * tolerance).max(2.0 * fitted.floor);
                 let length = until - self.now;
-                let curvature = (fitted.deviation - fitted.floor) / (length * length);
-                self.last = Some(LastFit { length, curvature });
+                self.last = Some(LastFit { length, bend: fitted.deviation - fitted.floor });
                 if fitted.deviation <= enough {
                     let drifts = fitted.drift > 0.5 * fitted.deviation;
                     if drifts && self.drifting.is_hopeless(self.now, self.window.end()) {

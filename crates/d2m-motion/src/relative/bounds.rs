@@ -4,7 +4,7 @@ use super::frame::cross_columns;
 use crate::Remainder;
 use crate::rotation::Spin;
 use crate::rounding::{UNIT, UP};
-use d2m_lanes::power_of_two;
+use d2m_lanes::{power_of_two, power_of_two_below};
 use glam::{DMat3, DVec3};
 
 /// Rounding of a frame and of all dot products made with it, in units of 2⁻⁵³·S0 (docs/theory/features.md).
@@ -179,6 +179,77 @@ pub struct OffsetRange {
     pub to: f64,
 }
 
+/// The difference of two reference points, `g + uτ` over a window.
+#[derive(Clone, Copy)]
+struct Line {
+    g: DVec3,
+    u: DVec3,
+    /// At least |u|.
+    speed: f64,
+    duration: f64,
+}
+
+/// 2⁻²⁴⁰ and 2²⁴⁰: squares of products of two lengths between them are numbers, and keep their digits.
+const PRODUCTS: core::ops::Range<f64> = power_of_two(-240)..power_of_two(240);
+
+impl Line {
+    /// R: the distance, padded.
+    fn radius(&self, distance: f64) -> f64 {
+        distance * UP + 64.0 * UNIT * (self.g.length() + self.speed * self.duration)
+    }
+
+    /// Are all the products of [`Line::times_within`] known to rounding?
+    fn has_squares(&self, distance: f64) -> bool {
+        PRODUCTS.contains(&self.radius(distance))
+            && PRODUCTS.contains(&self.u.abs().max_element())
+            && self.g.abs().max_element() < PRODUCTS.end
+    }
+
+    fn times_within(&self, distance: f64) -> Option<OffsetRange> {
+        let Self { g, u, duration, .. } = *self;
+        let (square, radius) = (u.length_squared(), self.radius(distance));
+        let speed = square.sqrt();
+        let nearest = g.cross(u).length() / speed;
+        if nearest > radius {
+            return None;
+        }
+        let half = ((radius - nearest) * (radius + nearest)).sqrt() / speed * UP;
+        let middle = -g.dot(u) / square;
+        let rounding = 16.0 * UNIT * (middle.abs() + half);
+        let (from, to) = (middle - half - rounding, middle + half + rounding);
+        if to < 0.0 || from > duration {
+            return None;
+        }
+        // f64::max and min drop a NaN: then it is the whole window.
+        Some(OffsetRange { from: from.max(0.0), to: to.min(duration) })
+    }
+
+    /// The same in units near the duration and the largest of the lengths, in which the padded distance is more than 2⁻⁴⁸.
+    #[cold]
+    fn times_in_units(&self, distance: f64) -> Option<OffsetRange> {
+        let whole = OffsetRange { from: 0.0, to: self.duration };
+        let second = power_of_two_below(self.duration);
+        let (g, gone) = (self.g, self.u * second);
+        let largest = g.abs().max(gone.abs()).max_element().max(distance);
+        if !(largest > 0.0 && largest < f64::INFINITY) {
+            return Some(whole);
+        }
+        let meter = power_of_two_below(largest);
+        let (g, u, distance) = (g / meter, gone / meter, distance / meter);
+        let line = Self { g, u, speed: length(u), duration: self.duration / second };
+        if line.has_squares(distance) {
+            let OffsetRange { from, to } = line.times_within(distance)?;
+            let [from, to] = [from, to].map(|offset| offset * second);
+            // What is subnormal is rounded.
+            let from = if from < f64::MIN_POSITIVE { 0.0 } else { from };
+            return Some(OffsetRange { from, to: to.max(f64::MIN_POSITIVE).min(self.duration) });
+        }
+        // It goes by less than rounding.
+        let apart = u.abs().max_element() < PRODUCTS.start && g.length() > line.radius(distance);
+        (!apart).then_some(whole)
+    }
+}
+
 impl RelativeMotion {
     /// Bound of the distance from B's reference point of a point of A within `radius`: `Y + ρ`.
     pub fn bound_reach(&self, radius: f64) -> f64 {
@@ -202,31 +273,9 @@ impl RelativeMotion {
     /// assert_eq!(beside.times_within(2.0), None);
     /// ```
     pub fn times_within(&self, distance: f64) -> Option<OffsetRange> {
-        let (g, u) = (self.offset, self.velocity);
-        let square = u.length_squared();
-        let size = g.length();
-        let pad = 64.0 * UNIT * (size + self.bounds.speed * self.duration);
-        let radius = distance * UP + pad;
-        let across = g.cross(u).length();
-        if !(square.is_normal() && across.is_finite()) {
-            // At rest, or out of the range of squares.
-            let apart = u == DVec3::ZERO && size > radius;
-            return (!apart).then_some(OffsetRange { from: 0.0, to: self.duration });
-        }
-        let speed = square.sqrt();
-        let nearest = across / speed;
-        if nearest > radius {
-            return None;
-        }
-        let half = ((radius - nearest) * (radius + nearest)).sqrt() / speed * UP;
-        let middle = -g.dot(u) / square;
-        let rounding = 16.0 * UNIT * (middle.abs() + half);
-        let (from, to) = (middle - half - rounding, middle + half + rounding);
-        if to < 0.0 || from > self.duration {
-            return None;
-        }
-        // f64::max and min drop a NaN: then it is the whole window.
-        Some(OffsetRange { from: from.max(0.0), to: to.min(self.duration) })
+        let line =
+            Line { g: self.offset, u: self.velocity, speed: self.bounds.speed, duration: self.duration };
+        if line.has_squares(distance) { line.times_within(distance) } else { line.times_in_units(distance) }
     }
 
     /// Bound V of the speed of a point of A within `radius` of A's reference point: `U + bY⊥ + wρ`.

@@ -336,11 +336,30 @@ fn rotations_are_the_same_in_every_unit_of_time() {
 fn times_within_a_distance_are_found_in_any_unit() {
     let passing = ConstantTwist::REST.with_position(DVec3::new(-4.0, 0.25, 0.0));
     let passing = passing.with_linear_velocity(DVec3::X * 8.0);
-    for unit in [1e-200, 1e-100, 1.0, 1e76, 1e100, 1e150, 1e200] {
-        let large = passing.with_position(passing.position() * unit);
-        let large = large.with_linear_velocity(passing.linear_velocity() * unit);
-        let relative = RelativeMotion::new(&large, &ConstantTwist::REST, 0.0, 1.0);
-        let times = relative.times_within(0.5 * unit).expect("they pass at 0.25");
-        assert!(times.from <= 0.45 && times.to >= 0.55, "{unit:e}: {times:?}");
+    let times = |meter: i32, second: i32, distance: f64| {
+        let (meter, second) = (2f64.powi(meter), 2f64.powi(second));
+        let there = passing.with_position(passing.position() * meter);
+        let there = there.with_linear_velocity(passing.linear_velocity() * (meter / second));
+        let relative = RelativeMotion::new(&there, &ConstantTwist::REST, 0.0, second);
+        let times = relative.times_within(distance * meter)?;
+        Some([times.from / second, times.to / second])
+    };
+    let usual = times(0, 0, 0.5).expect("they pass at 0.5");
+    assert!(usual[0] <= 0.45 && usual[1] >= 0.55 && usual[1] - usual[0] < 0.2, "{usual:?}");
+    for (meter, second) in [
+        (-660, 0),
+        (-330, 0),
+        (250, 0),
+        (330, 0),
+        (660, 0),
+        (-450, 450),
+        (450, -450),
+        (-900, -900),
+        (900, 900),
+    ] {
+        let found = times(meter, second, 0.5).expect("they pass at 0.5");
+        let off = (found[0] - usual[0]).abs().max((found[1] - usual[1]).abs());
+        assert!(off < 1e-12, "{meter} {second}: {found:?}");
+        assert_eq!(times(meter, second, 0.2), None, "{meter} {second}");
     }
 }

@@ -100,7 +100,9 @@ impl Reach {
         let across = n.cross(state.angular);
         let (f0, e0) = (n.dot(state.position), to_body * n);
         let (f1, e1) = (n.dot(state.linear) * h, to_body * across * h);
-        let (f2, e2) = (c * (0.5 * h * h), to_body * q * (0.5 * h * h));
+        // The square of a short time alone may be lost to underflow.
+        let bent = |rate: f64| 0.5 * h * (h * rate);
+        let (f2, e2) = (bent(c), to_body * (q * h) * (0.5 * h));
 
         let spread = state.rotation_radius + h * twist.angular.norm().hi();
         let now = long * (state.position_radius + reach * state.rotation_radius);
@@ -110,8 +112,8 @@ impl Reach {
             + reach * ((turned - IntervalVec3::point(q)).norm().hi() + turned.norm().hi() * spread);
         let size = long * (length(state.position) + reach)
             + h * long * (length(state.linear) + reach * length(state.angular))
-            + 0.5 * h * h * (c.abs() + reach * length(q));
-        let error = now + h * first + 0.5 * h * h * second + ROUNDINGS * size;
+            + bent(c.abs() + reach * length(q));
+        let error = now + h * first + bent(second) + ROUNDINGS * size;
         // Sums and products of fewer than 32 bounds; what underflow takes is less than the smallest normal number.
         let error = error * (1.0 + 16.0 * f64::EPSILON) + f64::MIN_POSITIVE;
         // No term is larger than the sum of them, so that nothing below is infinite or no number.
@@ -304,6 +306,23 @@ mod tests {
                 lost = reach.error;
             }
         }
+    }
+
+    /// Nor in a unit of time whose square is no number.
+    #[test]
+    fn what_accelerates_stays_within_its_reach_in_short_times() {
+        let (meter, second) = (2f64.powi(-90), 2f64.powi(-540));
+        let tree = MeshTree::new(Surface::cube(0.5).map(|p| p * meter).into_mesh(TriMesh::try_new));
+        let value = JointValue::try_polynomial(vec![0.0, 0.0, meter / second / second]).unwrap();
+        let kind = JointKind::Prismatic { axis: DVec3::X, value };
+        let joint = Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, kind).unwrap();
+        let motion = Chain::try_new(vec![joint]).unwrap();
+        let body = Moving::new(&tree, &motion);
+        let reach =
+            Reach::new(&body, DVec3::X, Interval::new(0.0, second), 0.5 * second, DVec3::ZERO).unwrap();
+        let most = reach.furthest(&mut Furthest::new(&tree), Sense::Along);
+        let most = most.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        assert!((1.5..1.5 + 1e-9).contains(&(most / meter)), "{most:e}");
     }
 
     /// What is known of nothing, or too large, is never apart.

@@ -19,11 +19,11 @@ const MOST_DRIFTING: u32 = 1 << 16;
 /// After so many of them it is estimated how many more there would be.
 const DRIFTING: u32 = 1 << 10;
 
-/// What the next fit goes by: the length of a span, and its deviation less the floor over the square of that.
+/// What the next fit goes by: the length of a span, and its deviation less the floor, which goes like the square of that.
 #[derive(Clone, Copy)]
 pub(super) struct LastFit {
     pub(super) length: f64,
-    pub(super) curvature: f64,
+    pub(super) bend: f64,
 }
 
 /// Spans so far whose velocities are enclosed too widely.
@@ -101,9 +101,9 @@ impl Advance<'_> {
     /// About how long a span may be to deviate by so much, or by the least that matters, if the motions go on as in the last span;
     /// the longest one if nothing is known. It saves fits of spans that are too long, and proves nothing.
     pub(super) fn expected_span(&self, deviation: f64) -> f64 {
-        let Some(LastFit { length, curvature }) = self.last else { return self.longest };
+        let Some(LastFit { length, bend }) = self.last else { return self.longest };
         let deviation = deviation.max(SMALL_PART * self.tolerance);
-        let expected = (EXPECTED * deviation / curvature).sqrt();
+        let expected = length * (EXPECTED * deviation / bend).sqrt();
         // What rounding leaves of a short span says nothing of a long one.
         let says_nothing = expected.is_nan() || self.longest > MOST_EXPECTED * length;
         if says_nothing { self.longest } else { self.longest.min(expected) }
