@@ -53,7 +53,7 @@ impl<'a> EnclosedPair<'a> {
     /// In units of the two motions; both are defined over the window.
     pub(crate) fn new([a, b]: [&'a dyn RigidMotion; 2], start: f64, end: f64) -> Self {
         let middle = Piece { lo: start, hi: end }.mid();
-        let units = Units::of_states(&[a.enclose_state(middle), b.enclose_state(middle)], start, end);
+        let units = Units::of_states(&[a.enclose_state(middle), b.enclose_state(middle)], 0.0, start, end);
         let mut pair = Self { a, b, start, end, units, first: None };
         pair.first = pair.try_piece(start, &units);
         pair

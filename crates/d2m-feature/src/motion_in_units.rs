@@ -1,9 +1,8 @@
 //! A smooth piece of any motion, expressed in other units of length and time.
-use crate::units::Units;
+use crate::units::{Units, scaled_vector};
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_lanes::scaled;
 use d2m_motion::{CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
-use glam::DVec3;
 
 /// Exponents of the unit of time beyond which times of a motion are subnormal: its enclosures are not queried there.
 const LARGEST_TIME_EXPONENT: i32 = 900;
@@ -64,10 +63,6 @@ fn scaled_interval(i: Interval, k: i32) -> Interval {
 
 fn scaled_box(v: IntervalVec3, k: i32) -> IntervalVec3 {
     IntervalVec3::new(scaled_interval(v.x, k), scaled_interval(v.y, k), scaled_interval(v.z, k))
-}
-
-fn scaled_vector(v: DVec3, k: i32) -> DVec3 {
-    DVec3::new(scaled(v.x, k), scaled(v.y, k), scaled(v.z, k))
 }
 
 impl RigidMotion for MotionInUnits<'_> {
@@ -137,16 +132,6 @@ impl RigidMotion for MotionInUnits<'_> {
         } else {
             motion.enclose_state(there)
         };
-        let (speed, time) = (units.speed_exponent(), units.time_exponent());
-        CertifiedState {
-            position: units.point(state.position),
-            at: units.point(state.at),
-            linear: scaled_vector(state.linear, speed),
-            angular: scaled_vector(state.angular, time),
-            position_radius: units.length(state.position_radius),
-            linear_radius: scaled(state.linear_radius, speed),
-            angular_radius: scaled(state.angular_radius, time),
-            ..state
-        }
+        units.state(&state)
     }
 }

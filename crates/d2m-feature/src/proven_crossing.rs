@@ -1,6 +1,7 @@
 //! Do two triangles share a point although their vertices are known only up to an error?
 
 use d2m_interval::{Interval, IntervalVec3};
+use d2m_lanes::{power_of_two, power_of_two_below};
 use glam::DVec3;
 
 /// Proof that triangles share a point whose vertices are within `error` of the given ones in each coordinate. False
@@ -22,6 +23,13 @@ use glam::DVec3;
 /// assert!(!proven_crossing(&floor, &touching, 0.125)); // may be apart
 /// ```
 pub fn proven_crossing(a: &[DVec3; 3], b: &[DVec3; 3], error: f64) -> bool {
+    let largest = a.iter().chain(b).fold(0.0, |most: f64, p| most.max(p.abs().max_element()));
+    if !KNOWN.contains(&largest) && largest > 0.0 && largest < f64::INFINITY {
+        let unit = power_of_two_below(largest);
+        // Exact, but for what underflows.
+        let [a, b] = [a, b].map(|triangle| triangle.map(|p| p / unit));
+        return proven_crossing(&a, &b, error / unit + f64::MIN_POSITIVE);
+    }
     let blur = Interval::new(-error, error);
     let wide = |p: DVec3| IntervalVec3::point(p) + IntervalVec3::new(blur, blur, blur);
     let pierces = |edges: &[DVec3; 3], face: &[DVec3; 3]| {
@@ -33,6 +41,9 @@ pub fn proven_crossing(a: &[DVec3; 3], b: &[DVec3; 3], error: f64) -> bool {
     };
     pierces(a, b) || pierces(b, a)
 }
+
+/// Lengths of which products of three, and intervals of these, are known to rounding; others are taken in a unit of their own.
+const KNOWN: core::ops::Range<f64> = power_of_two(-64)..power_of_two(256);
 
 /// Signs of the volumes of a face with three points, up to rounding: which side of its plane each seems to be on.
 fn seeming_sides(points: &[DVec3; 3], face: &[DVec3; 3]) -> [f64; 3] {
@@ -82,5 +93,24 @@ mod tests {
             }
         }
         assert!(claimed > crossing / 2 && claimed > 200, "{claimed} of {crossing}");
+    }
+    /// Exact scalings change no proof.
+    #[test]
+    fn crossings_are_proven_in_any_unit() {
+        let mut random = KnuthRandom(18);
+        let mut claimed = 0;
+        for round in 0..300 {
+            let mut triangle = || [0; 3].map(|_| random.vector());
+            let (a, b) = (triangle(), triangle());
+            let error = [1e-2, 1e-9][round % 2];
+            let usual = proven_crossing(&a, &b, error);
+            claimed += u32::from(usual);
+            for exponent in [-950, -300, -170, 300, 400, 900] {
+                let unit = power_of_two(exponent);
+                let [a, b] = [a, b].map(|triangle| triangle.map(|p| p * unit));
+                assert_eq!(proven_crossing(&a, &b, error * unit), usual, "round {round}: {exponent}");
+            }
+        }
+        assert!(claimed > 20, "{claimed}");
     }
 }

@@ -5,7 +5,7 @@
 //! verdicts, brackets relative to the window and feature pairs are the same for every exact scaling of lengths or times.
 use crate::contact::{ContactBracket, FirstContact};
 use d2m_lanes::{power_of_two, scaled};
-use d2m_motion::{CertifiedState, ConstantTwist};
+use d2m_motion::{Ball, CertifiedState, ConstantTwist, Kinematics};
 use glam::DVec3;
 
 /// The exponent of zero: smaller than every other one, with room to add to it.
@@ -26,6 +26,11 @@ pub(crate) fn exponent(x: f64) -> i32 {
 /// The exponent of the largest component.
 pub(crate) fn vector_exponent(v: DVec3) -> i32 {
     exponent(v.x).max(exponent(v.y)).max(exponent(v.z))
+}
+
+/// `v·2ᵏ`: exact unless it over- or underflows.
+pub(crate) fn scaled_vector(v: DVec3, k: i32) -> DVec3 {
+    DVec3::new(scaled(v.x, k), scaled(v.y, k), scaled(v.z, k))
 }
 
 /// Powers of two that lengths and times are multiplied by.
@@ -104,12 +109,14 @@ impl Units {
     }
 
     /// The units of any two motions about the middle of a window, from their states there: lengths in units of the
-    /// distance of the reference points, of how far they move and of their body frames'.
-    pub(crate) fn of_states(states: &[CertifiedState; 2], start: f64, end: f64) -> Self {
+    /// distance of the reference points, of how far they move, of their body frames' and of `size`.
+    pub(crate) fn of_states(states: &[CertifiedState; 2], size: f64, start: f64, end: f64) -> Self {
         let window = exponent(end - start);
         let [a, b] = states;
-        let place =
-            vector_exponent(a.position - b.position).max(vector_exponent(a.at)).max(vector_exponent(b.at));
+        let place = vector_exponent(a.position - b.position)
+            .max(vector_exponent(a.at))
+            .max(vector_exponent(b.at))
+            .max(exponent(size));
         let speed = vector_exponent(a.linear - b.linear);
         let length = place.max(if speed.min(window) == OF_ZERO { OF_ZERO } else { speed + window });
         let known = |k: i32| if k < OF_ZERO / 2 { 0 } else { k };
@@ -170,7 +177,7 @@ impl Units {
 
     #[cold]
     fn point_slowly(&self, p: DVec3) -> DVec3 {
-        DVec3::new(scaled(p.x, -self.length), scaled(p.y, -self.length), scaled(p.z, -self.length))
+        scaled_vector(p, -self.length)
     }
 
     /// A length of these units in the input's, rounded up where it is subnormal.
@@ -187,7 +194,7 @@ impl Units {
 
     /// A point of these units in the input's.
     pub(crate) fn point_back(&self, p: DVec3) -> DVec3 {
-        DVec3::new(scaled(p.x, self.length), scaled(p.y, self.length), scaled(p.z, self.length))
+        scaled_vector(p, self.length)
     }
 
     /// A speed of these units in the input's.
@@ -198,6 +205,37 @@ impl Units {
     /// A time in these units.
     pub(crate) fn time(&self, t: f64) -> f64 {
         scaled(t, -self.time)
+    }
+
+    /// A state in these units.
+    pub(crate) fn state(&self, state: &CertifiedState) -> CertifiedState {
+        let (speed, time) = (self.speed_exponent(), self.time_exponent());
+        CertifiedState {
+            position: self.point(state.position),
+            at: self.point(state.at),
+            linear: scaled_vector(state.linear, speed),
+            angular: scaled_vector(state.angular, time),
+            position_radius: self.length(state.position_radius),
+            linear_radius: scaled(state.linear_radius, speed),
+            angular_radius: scaled(state.angular_radius, time),
+            ..*state
+        }
+    }
+
+    /// What holds over a span of time, in these units.
+    pub(crate) fn kinematics(&self, over: &Kinematics) -> Kinematics {
+        let in_units = |ball: Ball, k: i32| Ball::new(scaled_vector(ball.center, k), scaled(ball.radius, k));
+        let (length, speed, time) = (-self.length, self.speed_exponent(), self.time_exponent());
+        Kinematics {
+            position: in_units(over.position, length),
+            position_tail: self.point(over.position_tail),
+            at: self.point(over.at),
+            linear: in_units(over.linear, speed),
+            angular: in_units(over.angular, time),
+            linear_rate: in_units(over.linear_rate, speed + time),
+            angular_rate: in_units(over.angular_rate, 2 * time),
+            ..*over
+        }
     }
 
     /// A time of these units in the input's, rounded down.
@@ -239,19 +277,18 @@ impl Units {
 
     /// A motion in these units; `None` where a number of it overflows.
     pub(crate) fn try_motion(&self, motion: &ConstantTwist, epoch: f64) -> Option<ConstantTwist> {
-        let vector = |v: DVec3, k: i32| DVec3::new(scaled(v.x, k), scaled(v.y, k), scaled(v.z, k));
         let (linear, angular) = (motion.linear_velocity(), motion.angular_velocity());
         // A body at rest is where it is at every time.
         let rests = linear == DVec3::ZERO && angular == DVec3::ZERO;
         let reference = if rests { epoch } else { motion.reference_time() };
         ConstantTwist::try_new(
-            vector(motion.position(), -self.length),
+            scaled_vector(motion.position(), -self.length),
             motion.orientation(),
-            vector(linear, self.time - self.length),
-            vector(angular, self.time),
+            scaled_vector(linear, self.time - self.length),
+            scaled_vector(angular, self.time),
         )
         .and_then(|scaled| scaled.try_with_reference_time(self.time(reference)))
-        .and_then(|scaled| scaled.try_with_at(vector(motion.at(), -self.length)))
+        .and_then(|scaled| scaled.try_with_at(scaled_vector(motion.at(), -self.length)))
         .ok()
     }
 }

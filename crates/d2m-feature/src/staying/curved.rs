@@ -47,8 +47,9 @@ pub(super) struct CurvedPair {
 
 impl CurvedPair {
     /// The span has a length, and no joint of the motions inside of it. Where the motions' enclosures know nothing the error is infinite.
-    pub(super) fn new(given: &[[DVec3; 3]; 2], middle: &Middle) -> Self {
-        let ([a, b], [over_a, over_b], h) = (&middle.states, &middle.rates, middle.half);
+    pub(super) fn new(middle: &Middle) -> Self {
+        let Middle { corners: given, states: [a, b], rates: [over_a, over_b], half: h, .. } = middle;
+        let h = *h;
         let arms = [given[0].map(|p| p - a.at), given[1].map(|p| p - b.at)];
         let [radius, extent] = arms.map(|arms| arms.map(length).into_iter().fold(0.0, f64::max) * UP);
         // Places of B are from its reference point here.
@@ -255,7 +256,8 @@ mod tests {
             let triangles = [MovingTriangle { corners, motion: &a }, MovingTriangle { corners, motion: &b }];
             let (from, long) = (0.3 * second, [0.01, 0.1][round % 2] * second);
             let to = from + long;
-            let pair = CurvedPair::new(&[corners; 2], &Middle::of(&triangles, from, to));
+            let middle = Middle::of(&triangles, from, to);
+            let pair = CurvedPair::new(&middle);
             // Of the third order in the length.
             let half = 0.5 * long / second;
             assert!(pair.error < 1000.0 * half * half * half, "round {round}: {}", pair.error);
@@ -268,7 +270,7 @@ mod tests {
                 for (corner, curve) in corners.into_iter().zip(&pair.corners[0]) {
                     let place =
                         turned * (poses[0].transform_point(corner) - poses[1].transform_point(DVec3::ZERO));
-                    most = most.max((place - at(curve, x)).length());
+                    most = most.max((middle.units.point(place) - at(curve, x)).length());
                 }
             }
             assert!(most <= pair.error + 1e-14, "round {round}: {most:e} {:e}", pair.error);

@@ -3,10 +3,11 @@
 mod curved;
 mod straight;
 
+use crate::units::Units;
 use curved::CurvedPair;
 use d2m_interval::Interval;
-use d2m_lanes::{UP, power_of_two_below};
-use d2m_motion::{Ball, CertifiedState, Kinematics, RigidMotion};
+use d2m_lanes::UP;
+use d2m_motion::{CertifiedState, Kinematics, RigidMotion};
 use glam::DVec3;
 use straight::StraightPair;
 
@@ -33,42 +34,41 @@ impl core::fmt::Debug for MovingTriangle<'_> {
     }
 }
 
-/// Both bodies in the middle of a span of time, about the place of B there, and their rates over all of it.
+/// Two triangles and their bodies in the middle of a span of time, about the place of B there, and their rates over all of it.
 ///
-/// The unit of time is a power of two near half of the span, so that squares of slow motions over long times, times small lengths, are not
-/// lost to underflow. Scaling is exact; what underflow takes there is less than the least normal number, and of what it takes of an angular
-/// velocity, times a length, the rounding of that length is far more.
+/// Units of time and of length are powers of two near the span and near the largest of the lengths, so that neither squares of slow motions
+/// over long times nor lengths are lost to underflow. Scaling is exact, but for what underflows: less than the least normal number, and
+/// of what it takes of an angular velocity, times a length, the rounding of that length is far more.
 struct Middle {
+    corners: [[DVec3; 3]; 2],
     states: [CertifiedState; 2],
     rates: [Kinematics; 2],
-    /// Half of the span: from one to two, or less where that is below the least normal number.
+    /// Half of the span.
     half: f64,
+    /// Of length, and of time.
+    units: Units,
 }
 
 impl Middle {
     fn of(triangles: &[MovingTriangle<'_>; 2], from: f64, to: f64) -> Self {
         let middle = (from + 0.5 * (to - from)).clamp(from, to);
         let half = (to - middle).max(middle - from) * UP;
-        let unit = power_of_two_below(half);
         let origin = triangles[1].motion.pose_and_twist(middle).0.translation;
         let span = Interval::new(from, to);
-        let scaled = |ball: Ball| Ball::new(ball.center * unit * unit, ball.radius * unit * unit);
-        let states = triangles.map(|triangle| {
-            let state = triangle.motion.enclose_state_about(middle, origin);
-            CertifiedState {
-                linear: state.linear * unit,
-                angular: state.angular * unit,
-                linear_radius: state.linear_radius * unit,
-                angular_radius: state.angular_radius * unit,
-                ..state
-            }
-        });
-        let rates = triangles.map(|triangle| {
-            let over = triangle.motion.enclose_kinematics(span);
-            let (linear_rate, angular_rate) = (scaled(over.linear_rate), scaled(over.angular_rate));
-            Kinematics { linear_rate, angular_rate, ..over }
-        });
-        Self { states, rates, half: half / unit }
+        let states = triangles.map(|triangle| triangle.motion.enclose_state_about(middle, origin));
+        let largest = |triangle: &MovingTriangle<'_>| {
+            triangle.corners.iter().fold(0.0, |most: f64, p| most.max(p.abs().max_element()))
+        };
+        let size = largest(&triangles[0]).max(largest(&triangles[1]));
+        let units = Units::of_states(&states, size, from, to);
+        let rates = triangles.map(|triangle| units.kinematics(&triangle.motion.enclose_kinematics(span)));
+        Self {
+            corners: triangles.map(|triangle| units.points(triangle.corners)),
+            states: states.each_ref().map(|state| units.state(state)),
+            rates,
+            half: units.time(half),
+            units,
+        }
     }
 }
 
@@ -93,16 +93,15 @@ pub fn stay_within(triangles: &[MovingTriangle<'_>; 2], from: f64, to: f64, leve
         return false;
     }
     let middle = Middle::of(triangles, from, to);
-    let corners = triangles.map(|triangle| triangle.corners);
-    StraightPair::new(&corners, &middle).stay_within(level)
-        || to > from && CurvedPair::new(&corners, &middle).stay_within(level)
+    let level = middle.units.length(level);
+    StraightPair::new(&middle).stay_within(level) || to > from && CurvedPair::new(&middle).stay_within(level)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use d2m_lanes::power_of_two;
-    use d2m_motion::ConstantTwist;
+    use d2m_motion::{ConstantTwist, Retimed};
     use d2m_testing::{Draw, KnuthRandom};
 
     /// Exact scalings of lengths and of times change no claim: also where the square of a rate of turning, times a length, is no number.
@@ -125,15 +124,44 @@ mod tests {
                 });
                 let triangles = [0, 1]
                     .map(|k| MovingTriangle { corners: bodies[k].0.map(|p| p * meter), motion: &motions[k] });
-                [0.3, 0.5, 0.8].map(|level| stay_within(&triangles, 0.0, second, level * meter))
+                let over =
+                    [0.0, 0.3, 0.5, 0.8].map(|level| stay_within(&triangles, 0.0, second, level * meter));
+                (over, stay_within(&triangles, second, second, 0.5 * meter))
             };
             let usual = found(0, 0);
-            claims += usual.into_iter().map(u32::from).sum::<u32>();
-            for (length, time) in [(0, 900), (0, -900), (-130, 480), (-100, 490), (150, -600), (100, 500)] {
+            claims += usual.0.into_iter().map(u32::from).sum::<u32>();
+            for (length, time) in [
+                (0, 900),
+                (0, -900),
+                (-130, 480),
+                (-100, 490),
+                (150, -600),
+                (100, 500),
+                (-900, 0),
+                (900, 0),
+                (-900, -900),
+                (900, 900),
+                (-400, 500),
+            ] {
                 assert_eq!(found(length, time), usual, "round {round}: {length} {time}");
             }
         }
         assert!(claims > 100, "{claims}");
+    }
+
+    /// A velocity that is no number, over a time that is as long as numbers go.
+    #[test]
+    fn what_goes_by_less_than_the_least_number_does_not_stay() {
+        let (meter, least, long) = (power_of_two(-133), power_of_two(-565), power_of_two(997));
+        let corners = [DVec3::ZERO, DVec3::X * meter, DVec3::Y * meter];
+        let slow = ConstantTwist::REST
+            .with_position(DVec3::Z * (-3.0 * meter))
+            .with_linear_velocity(DVec3::Z * (5.0 * least));
+        let slower = Retimed::try_new(slow, least, 0.0).unwrap();
+        // From a height of 0 to 2, at 1 in the middle.
+        let motions: [&dyn RigidMotion; 2] = [&slower, &ConstantTwist::REST];
+        let triangles = motions.map(|motion| MovingTriangle { corners, motion });
+        assert!(!stay_within(&triangles, 0.6 * long, long, 1.1 * meter));
     }
 
     /// Triangles that cross are within no distance below zero, and nothing is known of times in reverse order, or that are none.

@@ -62,24 +62,25 @@ pub(super) struct StraightPair {
 
 impl StraightPair {
     /// The span has no joint of the motions inside of it. Where the motions' enclosures know nothing the error is infinite.
-    pub(super) fn new(given: &[[DVec3; 3]; 2], middle: &Middle) -> Self {
-        let (states, rates, half) = (&middle.states, &middle.rates, middle.half);
+    pub(super) fn new(middle: &Middle) -> Self {
+        let Middle { corners: given, states, rates, half, .. } = middle;
+        let half = *half;
         let bent = |rate: f64| 0.5 * half * half * rate;
         let mut error = bent((rates[0].linear_rate - rates[1].linear_rate).bound_length()) * UP;
         let mut corners = [[Line { place: DVec3::ZERO, velocity: DVec3::ZERO }; 3]; 2];
         for k in 0..2 {
-            let (state, rates) = (&states[k], &rates[k]);
+            let (state, turn_rate) = (&states[k], rates[k].angular_rate.bound_length());
             let far = given[k].iter().map(|&p| length(p - state.at)).fold(0.0, f64::max) * UP;
-            let spin =
-                length(state.angular) + state.angular_radius + half * rates.angular_rate.bound_length();
-            let bend = (rates.angular_rate.bound_length() + spin * spin) * far;
-            let speed = length(state.linear) + spin * far;
+            // At one time nothing turns, however fast it does.
+            let turned = half * (length(state.angular) + state.angular_radius + half * turn_rate);
+            let bend = (bent(turn_rate) + 0.5 * turned * turned) * far;
+            let gone = half * length(state.linear) + turned * far;
             let placed = state.position_radius
                 + state.rotation_radius * far
                 + PLACED * (far + length(state.position))
                 + half * (state.linear_radius + state.angular_radius * far)
-                + half * (spin * (state.rotation_radius * far) + PLACED * speed);
-            error += (placed + bent(bend)) * UP + f64::MIN_POSITIVE;
+                + (turned * (state.rotation_radius * far) + PLACED * gone);
+            error += (placed + bend) * UP + f64::MIN_POSITIVE;
             corners[k] = given[k].map(|p| {
                 let arm = state.rotation * (p - state.at);
                 Line { place: arm + state.position, velocity: state.linear + state.angular.cross(arm) }
