@@ -3,10 +3,13 @@
 
 use d2m::bvh::{Evidence, StartState};
 use d2m::glam::DVec3;
+use d2m::interval::{Interval, IntervalVec3};
+use d2m::motion::{IntervalPose, IntervalTwist};
 use d2m::verify::{Reason, Verdict, Verifier};
 use d2m::{
-    Budget, ClearanceOptions, ConstantTwist, Contact, MeshTree, Mode, Moving, QueryOptions, Solid,
-    SpanStatus, TimeOfContact, TriMesh, Window, clearance, contact_spans, departure, time_of_contact,
+    Budget, ClearanceOptions, ConstantTwist, Contact, MeshTree, Mode, Moving, Pose, QueryOptions,
+    RigidMotion, Solid, SpanStatus, TimeOfContact, TriMesh, Twist, Window, clearance, contact_spans,
+    departure, time_of_contact,
 };
 use d2m_testing::{Draw, KnuthRandom, SmallScene, Surface};
 
@@ -236,5 +239,137 @@ fn answers_are_proven_in_any_unit_of_time() {
             matches!(verdict, Verdict::Unproven { reason: Reason::Tolerance, .. }),
             "{second:e}: {verdict:?}"
         );
+    }
+}
+
+/// Of a budget that ended the search of the start nothing is claimed, and so nothing is refuted, however the bodies stand.
+#[test]
+fn a_departure_whose_start_was_not_searched_claims_nothing() {
+    let tree = MeshTree::new(mesh(&Surface::cube(0.5)));
+    let verifier = Verifier::try_new(tree.mesh(), tree.mesh()).unwrap();
+    let options = QueryOptions::default().with_budget(Budget::UNLIMITED.with_node_tests(0));
+    for (from, speed) in [(3.0, -1.0), (0.5, 1.0), (0.25, 0.0)] {
+        let motion =
+            ConstantTwist::REST.with_position(DVec3::X * from).with_linear_velocity(DVec3::X * speed);
+        let bodies = [&ConstantTwist::REST, &motion].map(|motion| Moving::new(&tree, motion));
+        let [a, b] = bodies;
+        let answer = departure(a, b, Window::UNIT, &options).unwrap();
+        assert_eq!((answer.start, answer.left), (StartState::Undecided, None));
+        let verdict = verifier.departure(&bodies, Window::UNIT, &options, &answer, STEPS);
+        assert!(matches!(verdict, Verdict::Verified { .. }), "{from}: {answer:?} {verdict:?}");
+        let mut lie = answer;
+        lie.start = if from < 1.0 { StartState::Contained } else { StartState::Overlapping };
+        let verdict = verifier.departure(&bodies, Window::UNIT, &options, &lie, STEPS);
+        assert!(!matches!(verdict, Verdict::Verified { .. }), "{from}: {lie:?} {verdict:?}");
+    }
+}
+
+/// Radii that are small against the tolerance: what adding both rounds up is no other tolerance.
+#[test]
+fn answers_of_bodies_with_small_radii_are_proven_again() {
+    let tree = MeshTree::new(mesh(&Surface::cube(0.5)));
+    let verifier = Verifier::try_new(tree.mesh(), tree.mesh()).unwrap();
+    let falling = ConstantTwist::REST
+        .with_position(DVec3::new(0.25, 0.125, 2.0))
+        .with_linear_velocity(DVec3::new(0.0, 0.125, -2.0));
+    for (radius, tolerance) in [(1e-13, 1e-6), (1e-16, 1e-3), (1e-5, 1e-5), (1e-3, 1e-3), (0.1, 1e-2)] {
+        let bodies =
+            [&ConstantTwist::REST, &falling].map(|motion| Moving::new(&tree, motion).with_radius(radius));
+        let [a, b] = bodies;
+        let (options, wanted) = (
+            QueryOptions::default().with_tolerance(tolerance),
+            ClearanceOptions::default().with_tolerance(tolerance),
+        );
+        let found = time_of_contact(a, b, Window::UNIT, &options).unwrap();
+        let nearest = clearance(a, b, Window::UNIT, &wanted).unwrap();
+        let spans = contact_spans(a, b, Window::UNIT, &options, None).unwrap();
+        let verdicts = [
+            verifier.time_of_contact(&bodies, Window::UNIT, &options, &found, STEPS),
+            verifier.clearance(&bodies, Window::UNIT, &wanted, &nearest, STEPS),
+            verifier.contact_spans(&bodies, Window::UNIT, &options, None, &spans, STEPS),
+        ];
+        let are_verified = verdicts.iter().all(|verdict| matches!(verdict, Verdict::Verified { .. }));
+        assert!(are_verified, "{radius:e} {tolerance:e}: {verdicts:?}");
+    }
+}
+
+/// A motion whose places are known up to a distance in each coordinate.
+struct Vague(ConstantTwist, f64);
+
+impl RigidMotion for Vague {
+    fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+        self.0.pose_and_twist(t)
+    }
+    fn enclose_pose(&self, t: Interval) -> IntervalPose {
+        let (pose, off) = (self.0.enclose_pose(t), Interval::around(0.0, self.1));
+        IntervalPose { translation: pose.translation + IntervalVec3::new(off, off, off), ..pose }
+    }
+    fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist(t)
+    }
+    fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+        self.0.enclose_twist_rate(t)
+    }
+}
+
+/// Where rounding of poses hides more of a clearance's width than that, the width becomes the tolerance.
+#[test]
+fn a_width_that_rounding_hides_is_one_that_a_clearance_may_have() {
+    let tree = MeshTree::new(mesh(&Surface::cube(0.5)));
+    let verifier = Verifier::try_new(tree.mesh(), tree.mesh()).unwrap();
+    let far = DVec3::new(1e6, -7e5, 3e5);
+    let mut raised = 0;
+    for (gap, off) in
+        [(0.1, 1e-9), (0.12, 1e-9), (0.15, 1e-9), (0.2, 2e-9), (0.3, 3e-9), (0.35, 3e-9), (0.8, 1e-8)]
+    {
+        let still = Vague(ConstantTwist::REST.with_position(far), off);
+        let turning = ConstantTwist::REST
+            .with_position(far + DVec3::new(1.0 + gap, 0.1, 0.2))
+            .with_angular_velocity(DVec3::new(0.03, 0.06, 0.09));
+        let moved = Vague(turning, off);
+        let bodies = [&still, &moved].map(|motion| Moving::new(&tree, motion));
+        let [a, b] = bodies;
+        let options = ClearanceOptions::default();
+        let answer = clearance(a, b, Window::UNIT, &options).unwrap();
+        raised += u32::from(answer.upper - answer.lower > 4.0 * options.accuracy * answer.upper);
+        let verdict = verifier.clearance(&bodies, Window::UNIT, &options, &answer, STEPS);
+        assert!(matches!(verdict, Verdict::Verified { .. }), "{gap}: {answer:?} {verdict:?}");
+        let mut lie = answer;
+        lie.tolerance = 1e-4;
+        let verdict = verifier.clearance(&bodies, Window::UNIT, &options, &lie, STEPS);
+        assert!(matches!(verdict, Verdict::Unproven { reason: Reason::Tolerance, .. }), "{gap}: {verdict:?}");
+    }
+    assert!(raised > 0);
+}
+
+/// Over some numbers for a time, and at a time from which the next number is further than any place: as over others.
+#[test]
+fn answers_are_proven_over_few_numbers_for_a_time() {
+    let tree = MeshTree::new(mesh(&Surface::cube(0.5)));
+    let verifier = Verifier::try_new(tree.mesh(), tree.mesh()).unwrap();
+    let windows = [(1.0, 1000.0), (-1e15, 6.0), (1e5, 100.0), (1e299, 1000.0), (1e299, 0.0), (0.0, 1000.0)];
+    for (start, numbers) in windows {
+        let start: f64 = start;
+        let long = numbers * (start.abs().next_up() - start.abs());
+        let speed = (2.0 / long).min(1e299);
+        let falling = ConstantTwist::REST
+            .with_position(DVec3::new(0.25, 0.125, 1.5))
+            .with_linear_velocity(DVec3::Z * -speed)
+            .with_reference_time(start);
+        let bodies = [&ConstantTwist::REST, &falling].map(|motion| Moving::new(&tree, motion));
+        let (window, options) = (Window::try_new(start, start + long).unwrap(), QueryOptions::default());
+        let [a, b] = bodies;
+        let (wanted, found) = (ClearanceOptions::default(), time_of_contact(a, b, window, &options).unwrap());
+        let nearest = clearance(a, b, window, &wanted).unwrap();
+        let spans = contact_spans(a, b, window, &options, None).unwrap();
+        let parted = departure(a, b, window, &options).unwrap();
+        let verdicts = [
+            verifier.time_of_contact(&bodies, window, &options, &found, STEPS),
+            verifier.clearance(&bodies, window, &wanted, &nearest, STEPS),
+            verifier.contact_spans(&bodies, window, &options, None, &spans, STEPS),
+            verifier.departure(&bodies, window, &options, &parted, STEPS),
+        ];
+        let are_verified = verdicts.iter().all(|verdict| matches!(verdict, Verdict::Verified { .. }));
+        assert!(are_verified, "{start:e} {numbers}: {verdicts:?}");
     }
 }

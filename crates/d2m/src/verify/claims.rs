@@ -1,6 +1,6 @@
 //! What answers claim.
 
-use super::rounding::Scale;
+use super::rounding::{Scale, accept, resolvable};
 use super::witness::{are_near, clearance_fault, witness_fault};
 use super::{Claim, Reason, TimeSpan};
 use crate::{Clearance, ClearanceOptions, ContactSpan, SpanStatus};
@@ -13,6 +13,11 @@ pub(super) const MOST_LEFT: f64 = 3.3;
 pub(super) const RESOLUTION: f64 = 1e-6;
 /// The width of a clearance in tolerances, where that is more than its accuracy.
 const WIDTH: f64 = 4.0;
+
+/// Of a width w that is to be proven, rounding hides what is left where a pair that a search stops at, [`MOST_LEFT`] of its tolerances above the
+/// level, is not nearer by a quarter of w: so three quarters of w are no more than that, and w at most this many of the tolerances
+/// that rounding needs.
+const HIDDEN: f64 = MOST_LEFT / 0.75;
 
 /// How far bodies that touch are moved to part, at most, in errors of a distance: the engine moves them by 2⁹ of its own, which are smaller.
 const LAYER: f64 = 1024.0;
@@ -132,7 +137,10 @@ pub fn clearance_claim(
     let mut query = QueryOptions::default();
     query.tolerance = options.tolerance;
     let scale = Scale::new(bodies, window, &query, time);
-    let width = (options.accuracy * upper).max(WIDTH * scale.most);
+    // Where it hides more of the width than that, the width becomes the tolerance.
+    let hidden = if answer.status == ClearanceStatus::Contact { 0.0 } else { HIDDEN * scale.raised };
+    let most = scale.most.max(hidden);
+    let width = (options.accuracy * upper).max(WIDTH * most);
     let is_cut = lower >= options.cutoff || answer.status == ClearanceStatus::Undecided;
     if !is_cut && upper - lower > width {
         return Err(Reason::Tolerance);
@@ -141,9 +149,7 @@ pub fn clearance_claim(
     if answer.status == ClearanceStatus::Contact && (lower > 0.0 || upper > WIDTH * scale.most) {
         return Err(Reason::Distance);
     }
-    if scale.accept(answer.tolerance).is_err() {
-        return Err(Reason::Tolerance);
-    }
+    accept(answer.tolerance, most)?;
     let above = WIDTH * scale.most;
     // Bodies that meet are within the tolerance of each other at the time of contact, or one holds the other.
     let is_held = upper == 0.0 && !are_near(bodies, answer, above + scale.world_error);
@@ -234,7 +240,7 @@ pub fn spans_claim(
                 claims.push(Claim::Often {
                     span: TimeSpan { from: span.from, to: span.to },
                     distance: options.min_separation + above,
-                    every: resolution,
+                    every: resolvable(window, resolution),
                 });
             }
             SpanStatus::Undecided => {}

@@ -1,7 +1,7 @@
 //! Bodies that are in contact at the start, which counts no more once they have parted: what answers claim of them.
 
 use super::claims::{MOST_LEFT, RESOLUTION, at, contact_claim};
-use super::rounding::Scale;
+use super::rounding::{Scale, resolvable};
 use super::{Claim, Reason, TimeSpan};
 use crate::{
     Departure, Mode, Moving, QueryError, QueryOptions, Start, StartState, TimeOfContact, Window, departure,
@@ -23,15 +23,18 @@ pub fn departure_claim(
     options: &QueryOptions,
     answer: &Departure,
 ) -> Result<Claim, Reason> {
+    // Where the search of the start was ended nothing is known.
+    let is_nothing = answer.answer == TimeOfContact::Undecided { clear_until: window.start() };
+    if answer.start == StartState::Undecided && answer.left.is_none() && is_nothing {
+        return Ok(Claim::All(Vec::new()));
+    }
     let scale = Scale::new(bodies, window, options, window.start());
     let within = |time: f64| Claim::Within {
         span: at(time),
         distance: options.min_separation + scale.most,
         triangles: None,
     };
-    // No shorter than two numbers for a time are apart.
-    let clock = window.start().abs().max(window.end().abs());
-    let every = (RESOLUTION * window.length()).max(2.0 * (clock.next_up() - clock));
+    let every = resolvable(window, RESOLUTION * window.length());
     let stay_until = |to: f64| Claim::Often {
         span: TimeSpan { from: window.start(), to },
         distance: options.min_separation + NOT_LEFT * scale.most,

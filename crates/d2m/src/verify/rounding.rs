@@ -20,6 +20,12 @@ const ROUNDED_PLACES: f64 = 16.0 * 1.25;
 /// What counts as rounding of them, as a part of the lengths that they are about.
 const PLACES: f64 = 512.0 * f64::EPSILON;
 
+/// What the engine adds up it rounds up by 1e-14, which is less than this.
+const ROUNDED_UP: f64 = 1.0 + 64.0 * f64::EPSILON;
+
+/// How far the bodies go at most from one number for a time to the next; further is no number.
+const LARGEST: f64 = f64::MAX / 1024.0;
+
 /// How large the scene of a query is at a time of it, and how exactly anything can be known of it.
 pub(super) struct Scale {
     /// δ as it was asked for.
@@ -27,6 +33,8 @@ pub(super) struct Scale {
     /// The largest δ that is not a way to be right about anything: what was asked for, what the roundings of the scene's lengths (2γ) and
     /// of the enclosures of both poses may need, and what the bodies move from one number for a time to the next.
     pub(super) most: f64,
+    /// The part of that which the enclosures of both poses may need.
+    pub(super) raised: f64,
     /// γ, and what the enclosures of both poses at that time say of it: how far a distance of two triangles may be off.
     pub(super) error: f64,
     /// The same of points in the coordinates of the world.
@@ -61,13 +69,11 @@ impl Scale {
         let places = enclosed(&bodies[0]) + enclosed(&bodies[1]);
         let error = ERROR * lengths + BOXES * places;
         let far = states[1].each_ref().map(|(pose, _)| length(pose.translation));
-        let rounded = places.min(PLACES * (far[0] + far[1] + reaches[0] + reaches[1]));
+        let raised = ROUNDED_PLACES * places.min(PLACES * (far[0] + far[1] + reaches[0] + reaches[1]));
         Self {
             asked,
-            most: (asked * (1.0 + f64::EPSILON) + radii)
-                .max(2.0 * error)
-                .max(ROUNDED_PLACES * rounded)
-                .max(clock),
+            most: (asked * ROUNDED_UP + radii).max(2.0 * ERROR * lengths).max(raised).max(clock).min(LARGEST),
+            raised,
             error,
             world_error: error + ERROR * far[0].max(far[1]),
         }
@@ -81,6 +87,17 @@ impl Scale {
 
     /// Is this a tolerance that an answer may have?
     pub(super) fn accept(&self, tolerance: f64) -> Result<(), Reason> {
-        if tolerance >= 0.0 && tolerance <= self.most { Ok(()) } else { Err(Reason::Tolerance) }
+        accept(tolerance, self.most)
     }
+}
+
+/// A length of time, no shorter than two numbers for a time of the window are apart.
+pub(super) fn resolvable(window: Window, length: f64) -> f64 {
+    let clock = window.start().abs().max(window.end().abs());
+    length.max(2.0 * (clock.next_up() - clock))
+}
+
+/// Is a tolerance one that an answer may have, if this is the largest of those?
+pub(super) fn accept(tolerance: f64, most: f64) -> Result<(), Reason> {
+    if tolerance >= 0.0 && tolerance <= most { Ok(()) } else { Err(Reason::Tolerance) }
 }
