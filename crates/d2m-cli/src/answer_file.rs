@@ -5,9 +5,10 @@ use crate::arguments::StartChoice;
 use crate::engine::Pair;
 use crate::failure::{Failure, parse_json};
 use crate::verification::{PairVerifier, Promise};
-use d2m::bvh::{Solid, StartState, TimeOfContact, Window};
+use d2m::bvh::{ContactSpan, Solid, StartState, TimeOfContact, Window};
 use d2m::feature::FeaturePair;
 use d2m::motion::RigidMotion;
+use d2m::motion::serde_object::Object;
 use d2m_io::{contact_fields, start_in_json};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -47,6 +48,11 @@ pub(crate) fn read_answer(
 ) -> Result<Vec<Promise>, Failure> {
     let Question { motions, window, start } = *question;
     let mut object: Value = parse_json(place, bytes)?;
+    if !object.is_object() {
+        let expected =
+            "expected an object with keys, as d2m toc, d2m clearance and d2m spans print it with --json";
+        return Err(Failure::at(place, expected));
+    }
     let is_leaving = object.get("left").is_some();
     if start.is_some_and(|start| is_leaving != (start == StartChoice::Leave)) {
         let found = if is_leaving { "leave" } else { "report" };
@@ -93,8 +99,9 @@ impl AnswerFile<'_> {
     fn spans(&self, object: &Value) -> Result<Vec<Promise>, Failure> {
         let window: [f64; 2] = self.field(object, "window")?;
         self.check("window", window == [self.window.start(), self.window.end()])?;
-        let (spans, resolution) = (self.field(object, "spans")?, self.field(object, "resolution")?);
-        Ok(vec![Promise::Spans { spans, resolution }])
+        let spans: Vec<Object<ContactSpan>> = self.field(object, "spans")?;
+        let spans = spans.into_iter().map(|Object(span)| span).collect();
+        Ok(vec![Promise::Spans { spans, resolution: self.field(object, "resolution")? }])
     }
 
     fn clearance(&self, mut object: Value) -> Result<Vec<Promise>, Failure> {

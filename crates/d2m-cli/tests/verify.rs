@@ -93,12 +93,18 @@ fn edited_answers_are_never_verified() {
         assert!(matches!(code, Some(3 | 20 | 21)), "{key}: {code:?} {said}");
         assert!(!said.trim().is_empty());
     }
-    let (code, said) = {
-        let path = folder.file("answer.json", "{ not json");
+    let left = r#"["separated",[0,1],0,[12,12],[true,true],null,null,null,null,"apart",[0,1],null]"#;
+    for text in ["{ not json", "[]", "null", "7", r#""contact""#, left] {
+        let path = folder.file("answer.json", text);
         let out = run("verify", &["--answer", &path]);
-        (out.status.code(), stderr(&out))
-    };
-    assert!(code == Some(3) && said.contains("answer.json"), "{said}");
+        let (code, said) = (out.status.code(), stderr(&out));
+        assert!(code == Some(3) && said.contains("answer.json"), "{said}");
+        assert!(text.starts_with('{') || said.contains("an object with keys"), "{said}");
+        assert!(!said.contains("struct"), "{said}");
+    }
+    let spans = r#"{"window":[0,1],"resolution":1e-6,"spans":[[0,1,"clear",0]]}"#;
+    let out = run("verify", &["--answer", &folder.file("answer.json", spans)]);
+    assert!(out.status.code() == Some(3) && stderr(&out).contains("spans: "), "{}", stderr(&out));
     let other = d2m(&[
         "verify",
         "shape:box",
