@@ -8,7 +8,7 @@ use crate::numbers::{Fault, material_fault};
 use crate::pair_state::PairState;
 use crate::rigid_body::{RigidBody, Role};
 use crate::shown::shown;
-use crate::{Simulation, SimulationError, SimulationOptions};
+use crate::{Simulation, SimulationError, SimulationOptions, TouchEvent};
 use std::collections::BTreeSet;
 
 /// Everything that changes in a simulation: poses, momenta, flights, impulses of resting contacts, who sleeps and who touches, joints, kinds,
@@ -50,6 +50,8 @@ pub struct Snapshot {
     ignored: Vec<[usize; 2]>,
     materials: Vec<PairMaterial>,
     touching: Vec<[usize; 2]>,
+    #[cfg_attr(feature = "serde", serde(default))]
+    touches: Vec<TouchEvent>,
     unchecked: Vec<usize>,
 }
 
@@ -125,6 +127,7 @@ impl Simulation {
             ignored: listed(&self.ignored),
             materials: materials.collect(),
             touching: listed(&self.touching),
+            touches: self.touches.clone(),
             unchecked: self.unchecked.iter().copied().collect(),
         }
     }
@@ -227,7 +230,7 @@ impl Simulation {
         next.greatest_energy = snapshot.greatest_energy;
         next.neighbors = crate::neighbors::Neighbors::default();
         next.recorder = crate::record::Recorder::default();
-        next.touches.clear();
+        next.touches.clone_from(&snapshot.touches);
         if own_places.len() < snapshot.bodies.len() {
             next.check_all()?;
         }

@@ -5,12 +5,31 @@ mod ground;
 use d2m_bvh::MeshTree;
 use d2m_dynamics::{
     Body, Joint, JointKind, Kind, Motor, MotorTarget, Presence, Simulation, SimulationError,
-    SimulationOptions,
+    SimulationOptions, TouchChange,
 };
 use d2m_motion::{ConstantTwist, RigidMotion};
 use glam::DVec3;
 use ground::{cube, floor, tree};
 use std::sync::Arc;
+
+/// What is still to be reported of who touches is a part of the state: the end of a touch by a removal comes with the next step, also after the
+/// state in between was gone back to.
+#[test]
+fn what_is_still_to_be_reported_is_kept() {
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    simulation.add(&floor()).unwrap();
+    let body = simulation.add(&Body::new("cube", cube()).with_position(DVec3::Y * 0.501)).unwrap();
+    let began = simulation.snapshot();
+    assert_eq!((0..20).map(|_| simulation.step().unwrap().touches.len()).sum::<usize>(), 1);
+    simulation.remove(body);
+    let removed = simulation.snapshot();
+    let first = simulation.step().unwrap().touches;
+    assert!(first.len() == 1 && first[0].b == body && first[0].change == TouchChange::Ended);
+    simulation.restore(&removed).unwrap();
+    assert_eq!(simulation.step().unwrap().touches, first);
+    assert!(simulation.restore(&began).is_err());
+    assert_eq!(simulation.step().unwrap().touches, []);
+}
 
 /// A snapshot is gone back to after bodies and joints were added, joints taken out, kinds and materials changed: the steps have the same
 /// bits, and the names of bodies that are gone mean no others.

@@ -71,8 +71,8 @@ pub(crate) struct Simulation {
 pub(crate) struct Inner {
     pub(crate) engine: Engine,
     pub(crate) names: HashMap<String, usize>,
-    /// Of the last advance.
-    touches: Vec<Touched>,
+    /// Of the last advance; of none after a state was restored.
+    pub(crate) touches: Vec<Touched>,
 }
 
 impl Inner {
@@ -308,7 +308,8 @@ impl Simulation {
         }
     }
 
-    /// Who began to touch in the last `advance`, and who did so no more: `TouchEvent`s in the order of time. Sensors are among them.
+    /// Who began to touch in the last `advance`, and who did so no more: `TouchEvent`s in the order of time. Sensors are among them. After
+    /// `restore` there are none, until the next `advance`.
     ///
     /// >>> import d2m_ccd
     /// >>> simulation = d2m_ccd.Simulation()

@@ -82,8 +82,9 @@ impl Simulation {
     /// 0
     fn restore(&self, py: Python<'_>, snapshot: &Snapshot) -> PyResult<()> {
         let mut inner = self.lock(py);
-        let Inner { engine, names, .. } = &mut *inner;
+        let Inner { engine, names, touches } = &mut *inner;
         engine.restore(&snapshot.state).or_raise()?;
+        touches.clear();
         let kept: Vec<usize> = engine.ids().map(BodyId::index).collect();
         names.retain(|_, index| kept.contains(index));
         Ok(())

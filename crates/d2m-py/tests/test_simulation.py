@@ -304,6 +304,26 @@ def test_a_snapshot_goes_on_with_the_same_bits(written: bool) -> None:
     assert caught.value.index == floor
 
 
+def test_what_touched_in_a_run_that_was_gone_back_on_is_listed_no_more() -> None:
+    simulation = d2m_ccd.Simulation()
+    floor = simulation.add(BOX, kind="static")
+    cup = simulation.add(BOX, pose=at(0, 1.1))
+    before = simulation.snapshot()
+    simulation.advance(0.3)
+    assert [(event.a, event.b, event.change) for event in simulation.touches] == [(floor, cup, "began")]
+    simulation.restore(before)
+    assert simulation.touches == [] and not simulation.touch(floor, cup)
+    simulation.advance(0.3)
+    assert [(event.a, event.b, event.change) for event in simulation.touches] == [(floor, cup, "began")]
+    # What was removed touches no more: the next run says so, also after this state was gone back to.
+    simulation.remove(cup)
+    removed = simulation.snapshot()
+    for _ in range(2):
+        simulation.advance(simulation.time + 0.1)
+        assert [event.change for event in simulation.touches] == ["ended"]
+        simulation.restore(removed)
+
+
 def test_joints_that_cannot_be_made() -> None:
     simulation, floor, cup = standing()
     with pytest.raises(d2m_ccd.InputError, match="glue") as caught:
