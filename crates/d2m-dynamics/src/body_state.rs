@@ -2,7 +2,7 @@
 
 use crate::body::{Damping, Groups, Kind};
 use crate::held::Held;
-use crate::numbers::{Numbers, UNUSABLE, is_small, is_turn};
+use crate::numbers::{Numbers, is_small, is_turn, unusable_of};
 use crate::quiet::Quiet;
 use crate::rigid_body::{RigidBody, Role, Target};
 use crate::shown::{shown, shown_turn};
@@ -120,12 +120,7 @@ impl BodyState {
     /// # Errors
     /// Numbers that cannot be used, as of a body that is added or changed.
     pub(crate) fn restored(&self, own: &RigidBody, now: f64) -> Result<RigidBody, SimulationError> {
-        let bad = |name: &'static str, value: String| SimulationError::BadBody {
-            body: own.name.to_string(),
-            name,
-            value,
-            reason: UNUSABLE,
-        };
+        let bad = |name: &'static str, value: String| unusable_of(&own.name, name, value);
         self.check_numbers(own, now)?;
         let motion = self.held.0.as_ref().and_then(|held| held.motion.clone());
         let kind = match (self.kind, motion, &own.kind) {
@@ -190,9 +185,7 @@ impl BodyState {
     }
 
     fn check_numbers(&self, own: &RigidBody, now: f64) -> Result<(), SimulationError> {
-        let bad = |name: &'static str, value: String| {
-            Err(SimulationError::BadBody { body: own.name.to_string(), name, value, reason: UNUSABLE })
-        };
+        let bad = |name: &'static str, value: String| Err(unusable_of(&own.name, name, value));
         let numbers = Numbers {
             body: &own.name,
             vectors: &[("position", self.position), ("surface velocity", self.surface_velocity)],

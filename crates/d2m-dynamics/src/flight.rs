@@ -145,7 +145,9 @@ impl RigidBody {
 
     /// Where the body is at a time, with the velocities of its momenta: for the first line of a run, whether or not it has flown before.
     pub(crate) fn first_flight(&self, time: f64) -> ConstantTwist {
-        let velocity = if self.is_dynamic() { self.velocity() } else { Velocity::default() };
+        // What is beyond all numbers is an error of the step that begins.
+        let known = Some(self.velocity()).filter(|v| v.linear.is_finite() && v.angular.is_finite());
+        let velocity = known.filter(|_| self.is_dynamic()).unwrap_or_default();
         self.flight
             .with_position(self.position)
             .with_orientation(self.orientation)

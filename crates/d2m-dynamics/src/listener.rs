@@ -5,6 +5,8 @@ use crate::ContactImpulse;
 /// Receives the impulse at each contact, in the order of time: of events when they happen, of resting contacts when their
 /// flights begin. Closures that take a [`ContactImpulse`] are listeners.
 ///
+/// A listener that panics ends the step as an error does, before the panic goes on: the simulation can be used again.
+///
 /// The report of the same step holds the bodies' next flights; the impulses in its segments are the same ones, of which those
 /// of the last instant follow one step later.
 ///

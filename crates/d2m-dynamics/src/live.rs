@@ -2,7 +2,7 @@
 
 use crate::body::{Damping, Groups, Kind};
 use crate::contact::Material;
-use crate::numbers::{FINITE, Fault, UNUSABLE, material_fault};
+use crate::numbers::{FINITE, Fault, material_fault, unusable_of};
 use crate::rigid_body::{RigidBody, Target};
 use crate::shown::{shown, shown_turn};
 use crate::velocity::Velocity;
@@ -42,25 +42,14 @@ impl Simulation {
     pub fn set_pose(&mut self, body: BodyId, pose: Pose) -> Result<(), SimulationError> {
         let place = self.place(body);
         let own = &self.bodies[place];
-        let bad = |value: String| SimulationError::BadBody {
-            body: own.name.to_string(),
-            name: "pose",
-            value,
-            reason: UNUSABLE,
-        };
+        let bad = |value: String| unusable_of(&own.name, "pose", value);
+        let there = || shown(pose.translation.to_array());
         if own.is_kinematic() {
-            return Err(bad(format!(
-                "{} of a body that follows its motion",
-                shown(pose.translation.to_array())
-            )));
+            return Err(bad(format!("{} of a body that follows its motion", there())));
         }
-        let Target { position, orientation } = target(own, pose).ok_or_else(|| {
-            bad(format!("{}, {}", shown(pose.translation.to_array()), shown_turn(pose.rotation)))
-        })?;
-        let moved = own.moved(position, orientation, self.time);
-        let moved = moved.ok_or_else(|| {
-            bad(format!("{}, {}", shown(pose.translation.to_array()), shown_turn(pose.rotation)))
-        })?;
+        let target = target(own, pose);
+        let moved = target.and_then(|target| own.moved(target.position, target.orientation, self.time));
+        let moved = moved.ok_or_else(|| bad(format!("{}, {}", there(), shown_turn(pose.rotation))))?;
         let Velocity { linear, angular } = moved.velocity();
         moved.check_momenta([("velocity", linear), ("angular velocity", angular)], [DVec3::ZERO; 2])?;
         self.replace(place, moved)

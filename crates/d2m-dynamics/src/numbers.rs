@@ -15,6 +15,11 @@ pub(crate) const UNUSABLE: &str = "cannot be used";
 pub(crate) const FINITE: &str = "must be finite";
 pub(crate) const NOT_NEGATIVE: &str = "must be finite and not negative";
 
+/// What is said of a number of a body, of which nothing more is known.
+pub(crate) fn unusable_of(body: &str, name: &'static str, value: String) -> SimulationError {
+    SimulationError::BadBody { body: body.to_owned(), name, value, reason: UNUSABLE }
+}
+
 /// Numbers of a body.
 pub(crate) struct Numbers<'n> {
     /// The body's name.

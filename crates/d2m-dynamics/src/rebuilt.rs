@@ -2,7 +2,7 @@
 
 use crate::SimulationError;
 use crate::body::{Body, Kind, Presence};
-use crate::numbers::UNUSABLE;
+use crate::numbers::unusable_of;
 use crate::quiet::Quiet;
 use crate::rigid_body::{RigidBody, Role, Target, rest};
 use crate::turning::rotation_vector;
@@ -43,7 +43,7 @@ impl RigidBody {
     pub(crate) fn bad_target(&self, target: &impl core::fmt::Debug) -> SimulationError {
         let kind = if matches!(self.kind, Kind::Driven) { "" } else { " of a body that is not driven" };
         let value = format!("{target:?}{kind}");
-        SimulationError::BadBody { body: self.name.to_string(), name: "target", value, reason: UNUSABLE }
+        unusable_of(&self.name, "target", value)
     }
 
     /// Momenta of these velocities, of a dynamic body.

@@ -3,7 +3,7 @@
 use crate::body::{Body, BodyId, Damping, Groups, Kind, Mass, Presence};
 use crate::hollow::{bores, cavity};
 use crate::momenta::Momenta;
-use crate::numbers::{Numbers, UNUSABLE, is_small};
+use crate::numbers::{Numbers, is_small, unusable_of};
 use crate::quiet::Quiet;
 use crate::shown::shown;
 use crate::turning::{Pull, extreme_eigenvalues};
@@ -116,12 +116,7 @@ pub(crate) struct RigidBody {
 
 impl RigidBody {
     pub(crate) fn try_new(body: &Body, faces: Arc<Faces>, time: f64) -> Result<Self, SimulationError> {
-        let bad = |name: &'static str, value: String| SimulationError::BadBody {
-            body: body.name.clone(),
-            name,
-            value,
-            reason: UNUSABLE,
-        };
+        let bad = |name: &'static str, value: String| unusable_of(&body.name, name, value);
         let vectors = [
             ("position", body.position),
             ("velocity", body.linear_velocity),

@@ -22,6 +22,7 @@ use glam::DVec3;
 use plan::Replans;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
 /// Pairs, events or islands up to which threads cost more than they save.
 const FEW_ITEMS: usize = 7;
@@ -139,11 +140,13 @@ impl<'s> Step<'s> {
     }
 
     pub(crate) fn run(mut self) -> Result<StepReport, StepError> {
-        let outcome = self.fly_through().and_then(|()| self.sense(self.end));
+        // Listeners and motions are others' code: where one panics the step ends as after an error, before the panic goes on.
+        let flown = catch_unwind(AssertUnwindSafe(|| self.fly_through().and_then(|()| self.sense(self.end))));
+        let heard = catch_unwind(AssertUnwindSafe(|| self.report_impulses()));
         // Also after an error: what was flown until then is certified.
-        let time = if outcome.is_ok() { self.end } else { self.sim.time };
+        let time = if matches!(flown, Ok(Ok(()))) { self.end } else { self.sim.time };
         self.finish(time);
-        outcome?;
+        heard.and(flown).unwrap_or_else(|panic| resume_unwind(panic))?;
         self.report.segments = self.sim.recorder.take();
         self.report.touches = core::mem::take(&mut self.sim.touches);
         self.report.touches.sort_by(|one, other| one.time.total_cmp(&other.time));
@@ -301,7 +304,6 @@ impl<'s> Step<'s> {
     /// Everything to the end of the step.
     fn finish(&mut self, time: f64) {
         let gravity = self.sim.options.gravity;
-        self.report_impulses();
         #[cfg(feature = "audit")]
         self.conclude_flights(time);
         self.cut(time);

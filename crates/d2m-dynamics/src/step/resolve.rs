@@ -333,6 +333,7 @@ impl Step<'_> {
                 *self.spent.entry(number).or_default() += contact.impulse;
             }
         }
+        let mut heard = Vec::new();
         for contact in impulses().filter(|contact| contact.row.is_none()) {
             let impulse = contact.total();
             if impulse != DVec3::ZERO {
@@ -344,14 +345,17 @@ impl Step<'_> {
                     impulse: -impulse,
                     time: self.sim.time,
                 };
-                self.listener.contact(&impulse);
                 self.sim.recorder.contact(impulse);
                 let pressed = self.pressed.entry((contact.a, contact.b)).or_default();
                 for (on, pressed) in pressed.iter_mut().enumerate() {
                     *pressed = *pressed + contact.exerted(on);
                 }
                 self.sim.begin_touch((contact.a, contact.b), impulse.time);
+                heard.push(impulse);
             }
+        }
+        for impulse in &heard {
+            self.listener.contact(impulse);
         }
     }
 }
