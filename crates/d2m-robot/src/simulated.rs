@@ -149,8 +149,10 @@ impl<'r> RobotBodies<'r> {
     }
 
     fn add_all(&self, simulation: &mut Simulation, added: &mut SimulatedRobot) -> Result<(), RobotError> {
-        let poses = self.poses()?;
         let robot = self.robot;
+        let values = self.values()?;
+        let poses: Vec<Pose> =
+            robot.chains(&values)?.iter().map(|chain| chain.pose_and_twist(0.0).0).collect();
         let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for link in 0..robot.links.len() {
             groups.entry(robot.rigid_group(link)).or_default().push(link);
@@ -175,7 +177,7 @@ impl<'r> RobotBodies<'r> {
             if joint.mimic.is_some() {
                 added.remarks.push(format!("joint {:?} mimics another one and is free here", joint.name));
             }
-            let made = self.joint(index, &poses[joint.child], added)?;
+            let made = self.joint(index, values[index].value(0.0), &poses[joint.child], added)?;
             added.joints[index] = Some(simulation.add_joint(&made).map_err(|error| self.refused(&error))?);
         }
         for a in 0..robot.links.len() {
@@ -193,13 +195,12 @@ impl<'r> RobotBodies<'r> {
         Ok(())
     }
 
-    /// Where the links are at the start.
-    fn poses(&self) -> Result<Vec<Pose>, RobotError> {
+    /// The values of all joints at the start, also of those that mimic others.
+    fn values(&self) -> Result<Vec<JointValue>, RobotError> {
         let names: Vec<String> = self.positions.iter().map(|(name, _)| name.clone()).collect();
         let values = self.positions.iter().map(|&(_, value)| JointValue::try_constant(value));
         let values = values.collect::<Result<Vec<_>, _>>()?;
-        let all = self.robot.all_values(&names, values)?;
-        Ok(self.robot.chains(&all)?.iter().map(|chain| chain.pose_and_twist(0.0).0).collect())
+        self.robot.all_values(&names, values)
     }
 
     /// The body of a group of links, in the frame of its first one; none of a held root without a shape.
@@ -266,8 +267,14 @@ impl<'r> RobotBodies<'r> {
         Ok(Some(body))
     }
 
-    /// A joint of one number, where its child is at the start.
-    fn joint(&self, index: usize, child: &Pose, added: &SimulatedRobot) -> Result<Joint, RobotError> {
+    /// A joint of one number, with its value and where its child is at the start.
+    fn joint(
+        &self,
+        index: usize,
+        start: f64,
+        child: &Pose,
+        added: &SimulatedRobot,
+    ) -> Result<Joint, RobotError> {
         let own = &self.robot.joints[index];
         let (kind, axis) = match own.joint.kind() {
             ChainJoint::Prismatic { axis, .. } => (JointKind::Prismatic, *axis),
@@ -284,8 +291,6 @@ impl<'r> RobotBodies<'r> {
             Some(carrier) => Joint::new(kind, carrier, Some(carried), frame.place).with_axis(axis),
             None => Joint::new(kind, carried, None, frame.place).with_axis(-axis),
         };
-        let start = self.positions.iter().find(|(name, _)| *name == own.name);
-        let start = start.map_or_else(|| self.robot.rest_position(index), |(_, value)| *value);
         if let Some([lower, upper]) = own.limits.position {
             joint = joint.with_limits([lower - start, upper - start]);
         }

@@ -99,6 +99,28 @@ fn an_arm_begins_where_it_is_told_to() {
     assert_eq!(simulation.len(), 2);
 }
 
+/// What mimics another joint begins where that has it, with the limits of the file from there.
+#[test]
+fn what_mimics_another_joint_has_its_own_limits() {
+    let mimic = r#"<joint name="elbow" type="revolute"><limit lower="-1.5" upper="-0.5" velocity="1"/>
+      <mimic joint="shoulder" multiplier="-1" offset="-0.25"/>"#;
+    let text = ARM.replace(r#"<joint name="elbow" type="continuous">"#, mimic);
+    let robot = Robot::parse("arm.urdf", &text, &RobotOptions::new()).unwrap();
+    let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
+    let arm = RobotBodies::new(&robot).with_positions(&[("shoulder", 0.5)]).add_to(&mut simulation).unwrap();
+    let elbow = arm.joints[1].unwrap();
+    // It begins at -0.75, between limits that are 0.75 below and 0.25 above.
+    for (speed, wanted) in [(2.0, 0.25), (-2.0, -0.75)] {
+        simulation.set_motor(elbow, Some(Motor::new(MotorTarget::Velocity(speed)))).unwrap();
+        let end = simulation.time() + 1.0;
+        while simulation.time() < end {
+            simulation.step().unwrap();
+        }
+        let value = simulation.joint_value(elbow);
+        assert!((value - wanted).abs() < 1e-3, "{value} {wanted}");
+    }
+}
+
 /// A robot that nothing carries falls as a whole, and lies on the floor.
 #[test]
 fn a_free_robot_falls() {
