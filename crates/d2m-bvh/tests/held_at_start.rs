@@ -1,7 +1,7 @@
 //! Bodies that are inside others when the query begins.
 
 use d2m_bvh::{
-    MeshTree, Moving, PairCache, QueryError, QueryOptions, Solid, StartState, TriMesh, Window,
+    MeshTree, Moving, PairCache, QueryError, QueryOptions, Solid, StartState, TriMesh, Window, departure,
     time_of_contact, time_of_contact_with,
 };
 use d2m_motion::ConstantTwist;
@@ -70,5 +70,31 @@ fn a_sheet_inside_a_solid_is_held() {
         let claimed = inner.with_solid(Solid::Filled);
         let refused = time_of_contact(outer, claimed, Window::UNIT, &options);
         assert_eq!(refused, Err(QueryError::NotWatertight { body: 1 }));
+    }
+}
+
+/// A body inside of another one, nearer to its wall than the separation, or than the tolerance, is held, and does not leave by going away from the wall. As
+/// surfaces they touch.
+#[test]
+fn a_body_near_the_wall_of_the_other_is_held() {
+    let (large, small) = (cube(0.5), cube(0.125));
+    for (room, separation) in [(0.0625, 0.125), (0.5f64.powi(37), 0.0)] {
+        let inner = ConstantTwist::REST
+            .with_position(DVec3::X * (0.375 - room))
+            .with_linear_velocity(DVec3::X * -0.25);
+        let [a, b] = [Moving::new(&small, &inner), Moving::new(&large, &ConstantTwist::REST)];
+        let options = QueryOptions::default().with_min_separation(separation);
+        for [a, b] in [[a, b], [b, a]] {
+            let answer = time_of_contact(a, b, Window::UNIT, &options).unwrap();
+            let contact = answer.contact().unwrap_or_else(|| panic!("{answer:?}"));
+            assert_eq!((contact.start, contact.separation), (StartState::Contained, 0.0), "{contact:?}");
+            let departed = departure(a, b, Window::UNIT, &options).unwrap();
+            assert_eq!((departed.start, departed.left), (StartState::Contained, None), "{departed:?}");
+            let surfaces = options.with_solid(Solid::Surface);
+            let answer = time_of_contact(a, b, Window::UNIT, &surfaces).unwrap();
+            let contact = answer.contact().unwrap_or_else(|| panic!("{answer:?}"));
+            assert_eq!(contact.start, StartState::Touching, "{contact:?}");
+            assert!((contact.separation - room).abs() < 1e-12);
+        }
     }
 }

@@ -300,12 +300,15 @@ impl Joined {
             is_motor: false,
         };
         let h = ahead.length;
+        // The rates that limits leave.
+        let (mut slowest, mut fastest) = (f64::NEG_INFINITY, f64::INFINITY);
         if let Some([lo, hi]) = self.joint.limits {
             let push = Law::Range { lo: 0.0, hi: f64::INFINITY, softness: 0.0 };
-            for (direction, room) in [(axis, value - lo), (-axis, hi - value)] {
-                let target = if room >= 0.0 { -room / h } else { -TAKEN_BACK * room / ahead.step };
-                made.add(direction, row(push, target.min(0.0), target));
-            }
+            let least_of = |room: f64| if room >= 0.0 { -room / h } else { -TAKEN_BACK * room / ahead.step };
+            let [up, down] = [least_of(value - lo), least_of(hi - value)];
+            made.add(axis, row(push, up.min(0.0), up));
+            made.add(-axis, row(push, down.min(0.0), down));
+            (slowest, fastest) = (up.min(0.0), -down.min(0.0));
         }
         let motor = self.joint.motor;
         if let Some((motor, rate)) =
@@ -315,6 +318,8 @@ impl Joined {
             let most = motor.most * (ahead.passed + h);
             let [lo, hi] = [(-most - ahead.spent).min(0.0), (most - ahead.spent).max(0.0)];
             let law = Law::Range { lo, hi, softness: 0.0 };
+            // No rates obey a limit and a motor, without a bound on its force, that leads beyond it.
+            let rate = rate.min(fastest).max(slowest);
             made.add(axis, JointRow { is_motor: true, ..row(law, rate, rate) });
         }
         if !ahead.forces {

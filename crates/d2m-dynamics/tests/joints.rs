@@ -481,3 +481,28 @@ fn what_joints_connect_sleeps_at_once() {
         assert!(!simulation.is_asleep(base) && !simulation.is_asleep(arm), "{}", simulation.time());
     }
 }
+
+/// A motor without a bound on its force, of a joint of two bars that fly freely: at the joint's limit it stops, in one flight a step.
+#[test]
+fn motors_stop_at_limits_however_strong_they_are() {
+    for target in [MotorTarget::Velocity(2.0), MotorTarget::Position(3.0)] {
+        for limits in [[-0.5, 0.4], [0.0, 0.0]] {
+            let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+            let (first, second) = (bar(&mut simulation, 0.0), bar(&mut simulation, 1.0));
+            let hinge = Joint::new(JointKind::Revolute, first, Some(second), DVec3::X * 0.5);
+            let mut motor = Motor::new(target);
+            motor.most = f64::INFINITY;
+            let hinge = hinge.with_axis(DVec3::Z).with_limits(limits).with_motor(motor);
+            let hinge = simulation.add_joint(&hinge).unwrap();
+            let mut flights = 0;
+            for _ in 0..50 {
+                let report = simulation.step().unwrap();
+                flights += report.segments.len();
+                let value = simulation.joint_value(hinge);
+                assert!((limits[0] - 1e-4..limits[1] + 1e-4).contains(&value), "{target:?}: {value}");
+            }
+            assert!((simulation.joint_value(hinge) - limits[1]).abs() < 1e-5);
+            assert!(flights < 60, "{target:?}, {limits:?}: {flights}");
+        }
+    }
+}

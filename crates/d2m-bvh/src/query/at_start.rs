@@ -1,5 +1,6 @@
 //! How bodies that are in contact at the start of a window meet there: do they touch, or do they overlap?
 
+use super::report::triangles_of_held;
 use super::rounded::Rounded;
 use crate::moving::triangles_of;
 use crate::{
@@ -65,6 +66,16 @@ pub(super) fn judge(
             };
             Contact { start: StartState::Overlapping, separation: 0.0, ..found }
         }
+        Meeting::Holding(held) => {
+            let triangles = triangles_of_held(&held, bodies.each_ref().map(|body| body.body));
+            Contact {
+                start: StartState::Contained,
+                separation: 0.0,
+                evidence: Evidence::Crossing,
+                time_hi: contact.time_lo,
+                ..of_pair(contact, bodies, triangles, contact.normal)
+            }
+        }
         // The separation is still that of the reported triangles.
         Meeting::Undecided => Contact { start: StartState::Undecided, ..contact },
     })
@@ -97,7 +108,7 @@ fn nearest_of_rounded(
 /// Node tests of each part of the decision: bodies that touch all over would take as many as they have pairs.
 const PATIENCE: u64 = 1 << 12;
 
-/// How the bodies meet at a time; `None`: their meshes are apart.
+/// How the bodies meet at a time; `None`: their meshes are apart, and none holds the other.
 pub(super) fn meeting_at<'a>(
     bodies: &[Moving<'a>; 2],
     solids: [Solid; 2],

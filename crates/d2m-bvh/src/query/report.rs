@@ -253,16 +253,21 @@ fn describe(scene: &MovingScene<'_>, motion: &RelativeMotion, time: f64, witness
     }
 }
 
+/// A triangle of the vertex that shows that one body holds the other, and the first one of the body that holds it.
+pub(super) fn triangles_of_held(held: &Held, trees: [&MeshTree; 2]) -> [u32; 2] {
+    let inner = 1 - held.by;
+    let of_vertex = trees[inner].mesh().triangles().iter().position(|t| t.contains(&held.vertex));
+    let mut triangles = [0; 2];
+    triangles[inner] = of_vertex.unwrap_or(0) as u32;
+    triangles
+}
+
 /// The contact of a body inside the other: the vertex that shows it, and the nearest data that mean something.
 pub(super) fn contained(scene: &MovingScene<'_>, held: &Held) -> Contact {
-    let (motion, vertex) = (&scene.relative_motion(0.0), held.vertex);
+    let motion = &scene.relative_motion(0.0);
     let start = StartState::Contained;
     let frame = motion.frame::<F64x4>(0.0);
-    let (tree_a, tree_b) = (scene.a.tree, scene.b.tree);
-    let holder = |tree: &MeshTree| {
-        tree.mesh().triangles().iter().position(|t| t.contains(&vertex)).unwrap_or(0) as u32
-    };
-    let triangles = if held.by == 1 { [holder(tree_a), 0] } else { [0, holder(tree_b)] };
+    let triangles = triangles_of_held(held, [scene.a.tree, scene.b.tree]);
     let b = scene.b.corners(triangles[1]);
     let a = place_a::<F64x4>(&frame, &scene.a.corners(triangles[0]));
     let near = closest::<F64x4>(&a, &b);

@@ -22,7 +22,7 @@ impl Descent<'_> {
         let solids = bodies.map(|body| body.solid.unwrap_or(self.options.solid));
         // Each look has the patience that a start has, as far as the budget goes.
         match meeting_at(&bodies, solids, time, &mut self.meter) {
-            Ok(Some(Meeting::Overlapping(_))) => true,
+            Ok(Some(Meeting::Overlapping(_) | Meeting::Holding(_))) => true,
             // Parting says that no more than some roundings are between them. Those are a distance, unless it is that of placing them.
             Ok(Some(Meeting::Touching(touch))) => {
                 self.sampler.pair_at(touch.triangles, time).is_of_rounding()

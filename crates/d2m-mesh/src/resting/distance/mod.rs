@@ -449,7 +449,7 @@ impl Distance {
         let (triangles, normal) = match meeting {
             Meeting::Touching(touch) => (touch.triangles, touch.normal),
             Meeting::Overlapping(Some(triangles)) => (*triangles, DVec3::ZERO),
-            Meeting::Overlapping(None) | Meeting::Undecided => return self,
+            Meeting::Overlapping(None) | Meeting::Holding(_) | Meeting::Undecided => return self,
         };
         let [a, b] = triangles;
         let distance = triangle_distance(&scene.place(0, a), &scene.place(1, b));

@@ -21,7 +21,7 @@ mod parting;
 mod tests;
 
 use super::collide::{near_pairs, proven_crossing_pair, surfaces_are_apart};
-use super::containment::held_by;
+use super::containment::{Held, held_by, one_holds_the_other};
 use super::node_pair::RestingScene;
 use crate::meter::{Exhausted, Meter};
 use crate::{Posed, QueryError, Solid, StartState};
@@ -73,13 +73,14 @@ enum Near {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-#[expect(clippy::large_enum_variant, reason = "one at a time, taken apart at once")]
 pub enum Meeting<'a> {
     /// They part.
     Touching(Touch<'a>),
     /// Proven: their insides share a point, or their surfaces cross. With a pair of triangles that cross, if that is the proof.
     Overlapping(Option<[u32; 2]>),
-    /// Neither is proven.
+    /// Proven: their surfaces are apart, and one that is filled holds a part of the other.
+    Holding(Held),
+    /// None of these is proven.
     Undecided,
 }
 
@@ -91,6 +92,7 @@ impl Meeting<'_> {
                 Self::Touching(Touch { normal: -normal, triangles: [b, a], moved: [of_b, of_a], parted_by })
             }
             Self::Overlapping(triangles) => Self::Overlapping(triangles.map(|[a, b]| [b, a])),
+            Self::Holding(held) => Self::Holding(Held { by: 1 - held.by, ..held }),
             Self::Undecided => Self::Undecided,
         }
     }
@@ -100,6 +102,7 @@ impl Meeting<'_> {
         match self {
             Self::Touching(_) => StartState::Touching,
             Self::Overlapping(_) => StartState::Overlapping,
+            Self::Holding(_) => StartState::Contained,
             Self::Undecided => StartState::Undecided,
         }
     }
@@ -163,7 +166,7 @@ pub struct Meeters<'a> {
 }
 
 impl<'a> Meeters<'a> {
-    /// How they meet, whichever of them is named first. `None`: their surfaces are proven apart by more than this can judge.
+    /// How they meet, whichever of them is named first. `None`: their surfaces are proven apart by more than this can judge, and none holds the other.
     ///
     /// # Errors
     /// [`QueryError::BadPose`].
@@ -228,8 +231,12 @@ impl<'a> Meeters<'a> {
         let wide = wide.reaching(LAST_STEP * scene.need);
         let mut near = Vec::new();
         let finished = self.within(meter, |some| near_pairs(&wide, MOST_PAIRS, some, &mut near))?.is_some();
+        if near.is_empty() && !finished {
+            return Ok(Some(Meeting::Undecided));
+        }
         if near.is_empty() {
-            return Ok(None);
+            let held = self.within(meter, |some| one_holds_the_other(scene, self.solids, some))?;
+            return Ok(held.map_or(Some(Meeting::Undecided), |held| held.map(Meeting::Holding)));
         }
         // A body that is a point to rounding is stood for by its first triangle.
         let is_known = finished && near.len() < MOST_PAIRS && ![0, 1].iter().any(|&k| wide.is_point_like(k));
