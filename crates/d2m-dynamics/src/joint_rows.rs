@@ -180,6 +180,12 @@ impl Joined {
         !self.is_gone() && (self.joint.motor.is_some() || self.joint.spring.is_some())
     }
 
+    /// Does a motor without a bound on its force see to its value?
+    pub(crate) fn holds(&self) -> bool {
+        let is_hard = |motor: &Motor| motor.most == f64::INFINITY && motor.hard_rate(0.0, 1.0).is_some();
+        !self.is_gone() && self.joint.motor.as_ref().is_some_and(is_hard)
+    }
+
     pub(crate) fn is_gone(&self) -> bool {
         self.is_gone
     }

@@ -95,11 +95,11 @@ impl Simulation {
             restless[a] |= moving(b);
             restless[b] |= moving(a);
         }
-        // What joints connect sleeps at once; what drives hold still needs nothing below it.
+        // What joints connect sleeps at once; what a motor holds still, however heavy it is, needs nothing below it.
         for joined in self.joints.iter().filter(|joined| !joined.is_gone()) {
             let [a, b] = joined.bodies;
-            held_up[a] |= joined.drives();
-            held_up[b] |= joined.drives();
+            held_up[a] |= joined.holds();
+            held_up[b] |= joined.holds();
             let moves = |i: usize| self.bodies[i].is_kinematic() && self.bodies[i].surface_speed() > 0.0;
             if self.bodies[a].is_dynamic() && self.bodies[b].is_dynamic() {
                 together.push((a, b));

@@ -506,3 +506,34 @@ fn motors_stop_at_limits_however_strong_they_are() {
         }
     }
 }
+
+/// A bar that a motor holds level in the air falls asleep, and falls once the motor is gone, or weaker than its weight.
+#[test]
+fn what_a_motor_holds_still_sleeps_until_it_lets_go() {
+    let weak = || {
+        let mut motor = Motor::new(MotorTarget::Velocity(0.0));
+        motor.most = 1.0;
+        motor
+    };
+    for motor in [None, Some(weak())] {
+        let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+        let held = bar(&mut simulation, 0.5);
+        let hinge = Joint::new(JointKind::Revolute, held, None, DVec3::ZERO).with_axis(DVec3::Z);
+        let hinge = hinge.with_motor(Motor::new(MotorTarget::Velocity(0.0)));
+        let hinge = simulation.add_joint(&hinge).unwrap();
+        run(&mut simulation, 2.0);
+        assert!(simulation.is_asleep(held) && simulation.position(held).y.abs() < 1e-6);
+        simulation.set_motor(hinge, motor).unwrap();
+        run(&mut simulation, 2.2);
+        assert!(!simulation.is_asleep(held) && simulation.position(held).y < -0.01);
+    }
+    let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+    let held = bar(&mut simulation, 0.5);
+    let hinge = Joint::new(JointKind::Revolute, held, None, DVec3::ZERO).with_axis(DVec3::Z);
+    let hinge = simulation.add_joint(&hinge.with_motor(Motor::new(MotorTarget::Velocity(0.0)))).unwrap();
+    run(&mut simulation, 2.0);
+    assert!(simulation.is_asleep(held));
+    simulation.remove_joint(hinge);
+    run(&mut simulation, 2.2);
+    assert!(simulation.position(held).y < -0.1);
+}
