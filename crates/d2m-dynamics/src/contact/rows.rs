@@ -150,6 +150,7 @@ fn share(contact: &ContactPoint, widest: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::Material;
     use crate::contact::point::upright;
     use crate::velocity::Velocity;
     use glam::DMat3;
@@ -174,6 +175,21 @@ mod tests {
         assert_eq!(targets(&[1.0, 0.5, 0.125, 0.015625]), [-0.375, -0.1875, -0.0234375, -0.00146484375]);
         assert_eq!(targets(&[0.0, 0.0]), [0.0, 0.0]);
         assert_eq!(targets(&[0.5, -0.5]), [-0.1875, 0.1875]);
+    }
+
+    /// Of a face that lands flat without bouncing all vertices within one and a half gaps count, however fast they close; what bounces is left to fly.
+    #[test]
+    fn what_lands_flat_is_met_with_all_of_its_vertices() {
+        let falling =
+            SolverBody { velocity: Velocity { linear: DVec3::NEG_Y * 9.0, ..STILL.velocity }, ..STILL };
+        let span = Span { remaining: 1.0, step: 1.0, resting_speed: 1.0, room: Room::Kept };
+        let count = |restitution: f64| {
+            let material = Material { restitution, friction: 0.0 };
+            let at = |distance: f64| ContactPoint { distance, material, ..upright([0, 1]) };
+            let contacts = [0.99, 1.01, 1.49, 1.51].map(at);
+            select(&contacts.each_ref(), span, |i| if i == 1 { &falling } else { &STILL }).len()
+        };
+        assert_eq!([count(0.0), count(0.5)], [3, 0]);
     }
 
     /// A drum comes closer to what it carries along, which flies straight, as their distance does; and no closer to what it slides under.
