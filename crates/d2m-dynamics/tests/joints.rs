@@ -491,7 +491,7 @@ fn motors_stop_at_limits_however_strong_they_are() {
             let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
             let bars: Vec<BodyId> = (0..5).map(|k| bar(&mut simulation, 1.1 * f64::from(k))).collect();
             let joint = |k: usize| {
-                let axis = if k % 2 == 0 { DVec3::Y } else { DVec3::Z };
+                let axis = if k.is_multiple_of(2) { DVec3::Y } else { DVec3::Z };
                 let point = DVec3::X * (1.1 * k as f64 - 0.55);
                 let hinge =
                     Joint::new(JointKind::Revolute, bars[k - 1], Some(bars[k]), point).with_axis(axis);
