@@ -41,7 +41,7 @@ fn goes_on(simulation: &mut Simulation, ids: [BodyId; 2]) {
 }
 
 /// The bodies were at the start of the step again, in others that had moved on; a listener hears all of a step until it panics, and the
-/// recording has what it was told last.
+/// recording has what came last.
 #[test]
 fn a_listener_that_panics_moves_no_body() {
     let (mut simulation, ids) = followed();
