@@ -1,11 +1,11 @@
 //! Bodies that are inside others when the query begins.
 
 use d2m_bvh::{
-    MeshTree, Moving, PairCache, QueryError, QueryOptions, Solid, StartState, TriMesh, Window, departure,
-    time_of_contact, time_of_contact_with,
+    MeshTree, Moving, PairCache, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, TriMesh,
+    Window, departure, distance, time_of_contact, time_of_contact_with,
 };
-use d2m_motion::ConstantTwist;
-use d2m_testing::Surface;
+use d2m_motion::{ConstantTwist, RigidMotion};
+use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
 
 /// A closed cube.
@@ -97,4 +97,47 @@ fn a_body_near_the_wall_of_the_other_is_held() {
             assert!((contact.separation - room).abs() < 1e-12);
         }
     }
+}
+
+/// Cubes anywhere, or within a little of each other's walls, inside or outside, in several units: how they begin is what a query of the distance says of them, but
+/// that what is nearer to a wall than the separation touches it from outside, and that what is held within roundings of a wall may count as overlapping.
+#[test]
+fn starts_are_what_the_distance_says() {
+    let mut random = KnuthRandom(77);
+    let (large, mut held) = (0.5, 0);
+    for round in 0..3000 {
+        let unit = [1.0, 1e-30, 1e30, 1e-9][round % 4];
+        let half = 0.01 + 0.25 * random.unit();
+        let mut place = random.vector() * 1.2;
+        let axis = random.vector();
+        let mut turn = DQuat::from_xyzw(axis.x, axis.y, axis.z, random.signed()).normalize();
+        if round % 3 == 0 {
+            let room = [0.0, 1e-14, 1e-12, 1e-11, 1e-9, 1e-6, 1e-2][round / 7 % 7];
+            let wall = if round % 8 < 4 { large - half - room } else { large + half + room };
+            (place, turn) = (DVec3::new(wall, 0.3 * place.y, 0.3 * place.z), DQuat::IDENTITY);
+        }
+        let (outer, inner) = (cube(large * unit), cube(half * unit));
+        let motion =
+            ConstantTwist::try_new(place * unit, turn, random.vector() * unit, random.vector()).unwrap();
+        let separation = [0.0, 0.01, 0.1, 1.0][round / 3 % 4] * unit * random.unit();
+        let options = QueryOptions::default().with_min_separation(separation);
+        let bodies = [Moving::new(&inner, &motion), Moving::new(&outer, &ConstantTwist::REST)];
+        let [a, b] = if round % 2 == 0 { bodies } else { [bodies[1], bodies[0]] };
+        let start = match time_of_contact(a, b, Window::UNIT, &options).unwrap() {
+            TimeOfContact::Contact(contact) if contact.time_lo == 0.0 => contact.start,
+            TimeOfContact::Undecided { .. } => StartState::Undecided,
+            _ => StartState::Apart,
+        };
+        assert_eq!(departure(a, b, Window::UNIT, &options).unwrap().start, start, "round {round}");
+        let posed = Posed::new(&inner, motion.pose_and_twist(0.0).0);
+        let state = distance(posed, Posed::at_rest(&outer), Solid::Filled).unwrap().state;
+        held += u32::from((state, start) == (StartState::Contained, StartState::Contained));
+        let agree = match state {
+            StartState::Apart => matches!(start, StartState::Apart | StartState::Touching),
+            StartState::Contained => matches!(start, StartState::Contained | StartState::Overlapping),
+            _ => start == state,
+        };
+        assert!(agree || start == StartState::Undecided, "round {round}: {state:?}, {start:?}");
+    }
+    assert!(held > 200, "{held}");
 }
