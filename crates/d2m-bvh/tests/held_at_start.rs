@@ -123,7 +123,13 @@ fn starts_are_what_the_distance_says() {
         let options = QueryOptions::default().with_min_separation(separation);
         let bodies = [Moving::new(&inner, &motion), Moving::new(&outer, &ConstantTwist::REST)];
         let [a, b] = if round % 2 == 0 { bodies } else { [bodies[1], bodies[0]] };
-        let start = match time_of_contact(a, b, Window::UNIT, &options).unwrap() {
+        let answer = time_of_contact(a, b, Window::UNIT, &options).unwrap();
+        let mut cache = PairCache::new();
+        for _ in 0..2 {
+            let cached = time_of_contact_with(a, b, Window::UNIT, &options, &mut cache).unwrap();
+            assert_eq!(cached, answer, "round {round}");
+        }
+        let start = match answer {
             TimeOfContact::Contact(contact) if contact.time_lo == 0.0 => contact.start,
             TimeOfContact::Undecided { .. } => StartState::Undecided,
             _ => StartState::Apart,

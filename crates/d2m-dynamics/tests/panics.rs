@@ -61,7 +61,7 @@ fn a_listener_that_panics_moves_no_body() {
     goes_on(&mut simulation, ids);
 }
 
-/// Goes ever faster, so that a step is flown in parts; the first time that its place within the second half of a step is asked for it panics.
+/// Goes ever faster, so that a step has several flights. The first query of its pose within the second half of a step panics.
 struct Fails {
     failed: AtomicBool,
 }

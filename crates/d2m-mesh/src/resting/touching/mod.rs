@@ -231,11 +231,10 @@ impl<'a> Meeters<'a> {
         let wide = wide.reaching(LAST_STEP * scene.need);
         let mut near = Vec::new();
         let finished = self.within(meter, |some| near_pairs(&wide, MOST_PAIRS, some, &mut near))?.is_some();
-        if near.is_empty() && !finished {
-            return Ok(Some(Meeting::Undecided));
-        }
         if near.is_empty() {
-            let held = self.within(meter, |some| one_holds_the_other(scene, self.solids, some))?;
+            // Surfaces that are apart: what one of the bodies holds it holds with any rounding.
+            let holding = |some: &mut Meter| one_holds_the_other(scene, self.solids, some);
+            let held = if finished { self.within(meter, holding)? } else { None };
             return Ok(held.map_or(Some(Meeting::Undecided), |held| held.map(Meeting::Holding)));
         }
         // A body that is a point to rounding is stood for by its first triangle.
