@@ -102,6 +102,22 @@ def test_a_bad_trial_has_its_number_among_all(box: d2m_ccd.Tree) -> None:
     assert caught.value.index == 700 and "trial 700" in str(caught.value)
 
 
+def test_batches_and_streams_that_end_early_leave_the_process_alone(box: d2m_ccd.Tree) -> None:
+    """Cancelling what was in flight ended the process, mostly in the second such batch."""
+    import d2m_ccd.ray
+
+    rows = random_motions(1000, 26, 3.0)
+    bad = rows.copy()
+    bad[700, 5] = np.nan
+    for count in range(20):
+        with pytest.raises(d2m_ccd.InputError, match="trial 700"):
+            d2m_ccd.ray.batch(box, box, bad[: 900 + count])
+        chunks = (d2m_ccd.ray.Trials(rows[start : start + 100], None, None) for start in range(0, 1000, 100))
+        stream = d2m_ccd.ray.stream(box, box, chunks)
+        assert next(stream).tobytes() == d2m_ccd.batch(box, box, rows[:100]).tobytes()
+        stream.close()
+
+
 def robot_in_a_scene(tmp_path: Path) -> d2m_ccd.Robot:
     """With a mesh of a file that is gone when workers read the robot."""
     (tmp_path / "arm.obj").write_text("v 0 0 0\nv 0.8 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")

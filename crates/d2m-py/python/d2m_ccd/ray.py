@@ -159,24 +159,22 @@ class _Sender:
                 waiting.append(_InFlight(self._task(chunk), chunk, first, 0))
                 running.add(waiting[-1].task)
 
-        try:
-            while True:
+        # Where this ends early, what is in flight runs to its end: `ray.cancel` of a task that ends at that moment may end the process of the
+        # caller (Ray's "Tried to complete task that was not pending").
+        while True:
+            fill()
+            if not waiting:
+                return
+            while waiting[0].task in running:
+                ended, _ = ray.wait(list(running), num_returns=1)
+                running.difference_update(ended)
                 fill()
-                if not waiting:
-                    return
-                while waiting[0].task in running:
-                    ended, _ = ray.wait(list(running), num_returns=1)
-                    running.difference_update(ended)
-                    fill()
-                done = self._receive(waiting[0])
-                if done is None:
-                    running.add(waiting[0].task)
-                    continue
-                waiting.popleft()
-                yield done
-        finally:
-            for chunk in waiting:
-                ray.cancel(chunk.task, force=True)
+            done = self._receive(waiting[0])
+            if done is None:
+                running.add(waiting[0].task)
+                continue
+            waiting.popleft()
+            yield done
 
     def _receive(self, chunk: _InFlight) -> _Done | None:
         """The results of a chunk that has ended; none if it was lost and sent out again."""
@@ -233,6 +231,7 @@ def stream(
     file), taken as workers become free; at most `in_flight` of them run at a time (by default twice the cluster's processors).
     `reduce(trials, results)`, if given, is called on the worker, and what it returns is yielded: counts, or a file's name, instead
     of 192 bytes a trial. Other arguments as of `d2m_ccd.batch`. Yields structured arrays with the fields of `d2m_ccd.RESULT` otherwise.
+    Where an error ends it, or nobody asks for more, the chunks in flight run to their end and their results are dropped.
     """
     for done in _Sender([_tree(a), _tree(b)], in_flight, retries, options, reduce).run(chunks):
         yield done.results
