@@ -8,8 +8,8 @@ use crate::trials::Trial;
 use crate::unlike_sizes::{size_of, warn_of_sizes};
 use d2m::bvh::{
     Budget, Clearance, ClearanceOptions, ContactSpan, Departure, DistanceOptions, MeshTree, Mode, Moving,
-    Posed, QueryError, QueryOptions, Solid, TimeOfContact, Topology, TriMesh, Window, clearance,
-    contact_spans, departure, distance_within, time_of_contact,
+    Posed, QueryError, QueryOptions, Solid, TimeOfContact, TriMesh, Window, clearance, contact_spans,
+    departure, distance_within, time_of_contact,
 };
 use d2m::motion::{AnyMotion, RigidMotion};
 use d2m::paper::{self, SphereTree};
@@ -59,7 +59,7 @@ impl Body {
     fn is_watertight(&self) -> bool {
         match &self.tree {
             Tree::Engine(tree) => tree.is_watertight(),
-            Tree::Paper(tree) => Topology::new(tree.mesh()).is_watertight(),
+            Tree::Paper(tree) => tree.is_watertight(),
         }
     }
 }

@@ -4,8 +4,12 @@
 #[path = "../../d2m-bvh/tests/scenes/mod.rs"]
 mod scenes;
 
-use d2m_bvh::{Budget, Mode, QueryError, QueryOptions, Solid, TimeOfContact, Window};
+use d2m_bvh::{
+    Budget, Mode, QueryError, QueryOptions, Solid, Start, StartState, TimeOfContact, TriMesh, Window,
+};
+use d2m_motion::ConstantTwist;
 use d2m_paper::{Moving, SphereTree, time_of_contact};
+use d2m_testing::Surface;
 use glam::DVec3;
 use scenes::{Expected, Scene};
 
@@ -77,6 +81,10 @@ fn budgets_are_kept_and_honest() {
                     Expected::Start(_) => assert_eq!(clear_until, scene.window.start()),
                     Expected::Separated => assert!(scene.window.contains(clear_until)),
                 },
+                // They are near each other; whether they touch or overlap the budget left open.
+                TimeOfContact::Contact(contact) if contact.start == StartState::Undecided => {
+                    assert!(matches!(scene.expected, Expected::Start(_)), "{} {tests}", scene.name);
+                }
                 answer => scene.check(&answer, default_tolerance(&scene)),
             }
         }
@@ -102,6 +110,11 @@ fn bad_input_is_an_error_and_nothing_else() {
     }
     let unsupported = ask(&QueryOptions::DEFAULT.with_min_separation(0.5));
     assert_eq!(unsupported, Ok(TimeOfContact::Undecided { clear_until: scene.window.start() }));
+    // Nothing of what it does not know of is passed over.
+    for [a, b] in [[moving(0).with_radius(0.5), moving(1)], [moving(0), moving(1).with_radius(0.5)]] {
+        assert_eq!(time_of_contact(a, b, scene.window, &QueryOptions::DEFAULT), unsupported);
+    }
+    assert_eq!(ask(&QueryOptions::DEFAULT.with_start(Start::Leave)), unsupported);
     let sheet = SphereTree::new(scenes::soup(&[[DVec3::ZERO, DVec3::X, DVec3::Y]]));
     let open = Moving::new(&sheet, &scene.motions[0]);
     let refused = time_of_contact(moving(0), open, Window::UNIT, &QueryOptions::DEFAULT);
@@ -239,7 +252,6 @@ fn accelerated_motions() {
 /// Any finite numbers at all: an answer or an error within the budget, never a panic.
 #[test]
 fn arbitrary_numbers_neither_panic_nor_hang() {
-    use d2m_bvh::TriMesh;
     use d2m_motion::ConstantTwist;
     use glam::DQuat;
     let mut state = 0x1234_5678_9ABC_DEF0u64;
@@ -299,7 +311,8 @@ fn arbitrary_numbers_neither_panic_nor_hang() {
     assert!(wild < 60.0, "{wild}");
 }
 
-/// Two surfaces that coincide: every triangle touches, none crosses, and the answer takes no time.
+/// Two surfaces that coincide: every triangle touches, none crosses, and the answer takes no time. That they part is not looked
+/// for among so many pairs.
 #[test]
 fn coincident_surfaces_are_answered_at_once() {
     let n = 96;
@@ -315,6 +328,30 @@ fn coincident_surfaces_are_answered_at_once() {
     let started = std::time::Instant::now();
     let options = QueryOptions::DEFAULT.with_solid(Solid::Surface);
     let answer = time_of_contact(body, body, Window::UNIT, &options).unwrap();
-    assert_eq!(answer.contact().map(|c| c.start), Some(d2m_bvh::StartState::Touching));
+    assert_eq!(answer.contact().map(|c| c.start), Some(StartState::Undecided));
     assert!(started.elapsed().as_secs_f64() < 5.0);
+}
+
+/// A small body inside of another one, nearer to its wall than the tolerance, is held, as the default engine says; as surfaces they touch,
+/// or nothing is said of how they meet.
+#[test]
+fn a_body_near_the_wall_of_the_other_is_held() {
+    let cube = |half| SphereTree::new(Surface::cube(half).into_mesh(TriMesh::try_new));
+    let (large, small) = (cube(0.5), cube(0.05));
+    let rest = ConstantTwist::REST;
+    for gap in [0.2, 0.04, 1e-9] {
+        let place = rest.with_position(DVec3::new(0.45 - gap, 0.1, -0.2));
+        let options = QueryOptions::DEFAULT.with_tolerance(0.05);
+        for [a, b] in [[(&large, &rest), (&small, &place)], [(&small, &place), (&large, &rest)]] {
+            let [a, b] = [a, b].map(|(body, motion)| Moving::new(body, motion));
+            let start = |options: &QueryOptions| {
+                time_of_contact(a, b, Window::UNIT, options).unwrap().contact().map(|found| found.start)
+            };
+            assert_eq!(start(&options), Some(StartState::Contained), "{gap}");
+            let as_surfaces = start(&options.with_solid(Solid::Surface));
+            let is_near = gap < 0.05;
+            assert_eq!(as_surfaces.is_some(), is_near, "{gap}");
+            assert_ne!(as_surfaces, Some(StartState::Overlapping), "{gap}");
+        }
+    }
 }

@@ -5,6 +5,7 @@ use d2m::bvh::{Evidence, StartState};
 use d2m::glam::DVec3;
 use d2m::interval::{Interval, IntervalVec3};
 use d2m::motion::{IntervalPose, IntervalTwist};
+use d2m::paper::{self, SphereTree};
 use d2m::verify::{Reason, Verdict, Verifier};
 use d2m::{
     Budget, ClearanceOptions, ConstantTwist, Contact, MeshTree, Mode, Moving, Pose, QueryOptions,
@@ -72,6 +73,31 @@ fn answers_of_hard_scenes_are_proven_again() {
         |(name, reason, answer): &(String, Reason, TimeOfContact)| format!("{name}: {reason}: {answer:?}");
     let shown: Vec<String> = open.iter().map(show).collect();
     assert!(verified as f64 > 0.995 * SCENES as f64, "{verified}\n{}", shown.join("\n"));
+}
+
+/// Those of the paper's method, too, at the start of a window and later.
+#[test]
+fn answers_of_the_reference_method_are_proven_again() {
+    let (mut asked, mut met, mut open) = (0, 0, Vec::new());
+    for index in 0..SCENES / 4 {
+        let mut answered = Answered::draw(index);
+        answered.options = answered.options.with_min_separation(0.0);
+        let spheres = answered.trees.each_ref().map(|tree| SphereTree::new(tree.mesh().clone()));
+        let [a, b] = [0, 1].map(|k| paper::Moving::new(&spheres[k], &answered.scene.motions[k]));
+        let answer = paper::time_of_contact(a, b, answered.window, &answered.options).unwrap();
+        asked += 1;
+        met += usize::from(answer.contact().is_some_and(|found| found.evidence != Evidence::Early));
+        match answered.verdict(&answer) {
+            Verdict::Verified { .. } => {}
+            verdict @ Verdict::Refuted { .. } => {
+                panic!("{}: {verdict:?}: {answer:?}", answered.scene.name)
+            }
+            Verdict::Unproven { reason, .. } => {
+                open.push(format!("{}: {reason}: {answer:?}", answered.scene.name));
+            }
+        }
+    }
+    assert!(open.len() * 50 < asked && met > 100, "{met} of {asked}\n{}", open.join("\n"));
 }
 
 /// A time that is later, "separated" for a contact, another separation, other triangles, another tolerance, another start.

@@ -10,7 +10,7 @@ use d2m::{
     MeshTree, Mode, Moving, Pose, QueryOptions, RigidMotion, Span, SpanStatus, Start, StartState,
     TimeOfContact, Window, clearance, contact_spans, departure, time_of_contact,
 };
-use d2m_testing::Opaque;
+use d2m_testing::{Draw, KnuthRandom, Opaque};
 use glam::DVec3;
 
 const STEPS: u64 = 1 << 20;
@@ -287,4 +287,29 @@ fn a_tolerance_that_rounding_of_poses_raises_is_one_that_an_answer_may_have() {
         let verdict = verifier.time_of_contact(&bodies, Window::UNIT, &options, &lie, STEPS);
         assert!(matches!(verdict, Verdict::Unproven { reason: Reason::Tolerance, .. }), "{verdict:?}");
     }
+}
+
+/// Bodies that are up to four tolerances apart at the start, and at the end: searches stop up to 3.3 above the separation, so they may be said to be
+/// in contact.
+#[test]
+fn bodies_a_few_tolerances_apart_may_be_in_contact() {
+    let mut random = KnuthRandom(2);
+    let (large, small) = (cube(0.5), cube(0.2));
+    let (mut left, mut stayed) = (0, 0);
+    for case in 0..600 {
+        let tolerance = 10f64.powf(-2.0 - 3.0 * random.unit());
+        let most = if case % 2 == 0 { 4.0 } else { 1.2 };
+        let [first, last] = [0, 1].map(|_| tolerance * most * random.unit());
+        let min_separation = if case % 3 == 0 { 0.05 } else { 0.0 };
+        // Beside the inside of a face, so that no other distance is less.
+        let place = DVec3::new(0.7 + min_separation + first, 0.2 * random.signed(), 0.2 * random.signed());
+        let going = ConstantTwist::REST.with_position(place).with_linear_velocity(DVec3::X * (last - first));
+        let options = QueryOptions::default().with_tolerance(tolerance).with_min_separation(min_separation);
+        let pair = Pair { options, ..Pair::new([&large, &small], &going) };
+        let answer = pair.departure();
+        assert!(pair.is_departure(&answer), "{case}: from {first:e} to {last:e}, {tolerance:e}: {answer:?}");
+        left += usize::from(answer.left.is_some());
+        stayed += usize::from(answer.left.is_none());
+    }
+    assert!(left > 200 && stayed > 100, "{left} {stayed}");
 }

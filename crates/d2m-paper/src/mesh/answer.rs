@@ -6,7 +6,7 @@ use super::leaf_pair::Candidate;
 use super::sphere_tree::SphereTree;
 use super::step_back::{Disjoint, estimate_relative_velocity, step_back};
 use crate::feature::RelativeMotion;
-use d2m_bvh::{Contact, Evidence, StartState};
+use d2m_bvh::{Contact, Evidence};
 use d2m_feature::{FeaturePair, TriangleFeature};
 use d2m_interval::Interval;
 use d2m_motion::Pose;
@@ -27,7 +27,7 @@ pub(crate) fn certified_contact(
         estimate_relative_velocity(bodies, root, pose.transform_point(middle)).length()
     };
     let disjoint = step_back(bodies, relative, Interval::new(start, root), guess, tolerance)?;
-    Some(describe(bodies, &disjoint, best, tolerance))
+    Some(describe(bodies, relative, &disjoint, best, tolerance))
 }
 
 /// Capoeira mode: the bodies as they stand where the spheres of two leaves begin to overlap.
@@ -40,35 +40,24 @@ pub(crate) fn early_contact(
     let time = best.bracket.lo();
     let distance = enclose_distance(bodies[0].body, bodies[1].body, &relative.placement(time), f64::INFINITY);
     let pair = distance.closest?;
-    Some(describe(bodies, &Disjoint { time, distance, pair }, best, tolerance))
+    Some(describe(bodies, relative, &Disjoint { time, distance, pair }, best, tolerance))
 }
 
-fn describe(bodies: &[Moving<'_>; 2], disjoint: &Disjoint, best: &Candidate, tolerance: f64) -> Contact {
-    let mut contact = contact_of_pair(bodies, disjoint.time, tolerance, &disjoint.pair);
-    contact.time_hi = best.bracket.hi().max(disjoint.time);
-    contact.separation = disjoint.distance.lower;
-    contact.feature = feature_of(bodies, &disjoint.pair).unwrap_or(best.feature);
-    contact
-}
-
-/// The contact of bodies that meet at the start.
-pub(crate) fn contact_at_start(
+fn describe(
     bodies: &[Moving<'_>; 2],
-    time: f64,
+    relative: &RelativeMotion<'_>,
+    disjoint: &Disjoint,
+    best: &Candidate,
     tolerance: f64,
-    start: StartState,
-    pair: &ClosestPair,
 ) -> Contact {
-    let mut contact = contact_of_pair(bodies, time, tolerance, pair);
-    contact.start = start;
-    contact.separation = 0.0;
-    if start == StartState::Contained {
-        // Decided by certain signs while the surfaces are further apart than the tolerance.
-        contact.evidence = Evidence::Crossing;
+    let mut contact = contact_of_pair(bodies, disjoint.time, tolerance, &disjoint.pair);
+    // A bracket holds what may be a root: that the bodies have met by its end is measured.
+    let end = best.bracket.hi().max(disjoint.time);
+    let met = enclose_distance(bodies[0].body, bodies[1].body, &relative.placement(end), 2.0 * tolerance);
+    if met.upper <= tolerance {
+        (contact.time_hi, contact.evidence) = (end, Evidence::Near);
     }
-    if start == StartState::Touching {
-        contact.separation = (pair.detail.lower - pair.rounding).max(0.0);
-    }
+    contact.separation = disjoint.distance.lower;
     contact
 }
 
@@ -82,11 +71,7 @@ fn contact_of_pair(bodies: &[Moving<'_>; 2], time: f64, tolerance: f64, pair: &C
     };
     let normal = pose.transform_vector(direction).normalize_or(DVec3::X);
     let (point_a, point_b) = (pose.transform_point(detail.point_a), pose.transform_point(detail.point_b));
-    let feature = feature_of(bodies, pair).unwrap_or_else(|| any_feature(bodies, pair));
-    let mut contact = Contact::unproven(time, feature, [pair.triangle_a, pair.triangle_b]);
-    if detail.upper + pair.rounding <= tolerance {
-        contact.evidence = Evidence::Near;
-    }
+    let mut contact = Contact::unproven(time, feature_of(bodies, pair), [pair.triangle_a, pair.triangle_b]);
     contact.tolerance = tolerance;
     contact.normal = normal;
     (contact.point_a, contact.point_b) = (point_a, point_b);
@@ -101,30 +86,23 @@ fn estimate_normal(tree: &SphereTree, pair: &ClosestPair) -> DVec3 {
     -(b - a).cross(c - a).normalize_or((a - pair.corners_a[0]).normalize_or(DVec3::X))
 }
 
-/// The features on which the closest points lie, where they are a vertex and a face or two edges.
-fn feature_of(bodies: &[Moving<'_>; 2], pair: &ClosestPair) -> Option<FeaturePair> {
+/// The features on which the closest points lie; where a face meets an edge or a face, a corner stands for the other triangle.
+fn feature_of(bodies: &[Moving<'_>; 2], pair: &ClosestPair) -> FeaturePair {
     let corners = |i: usize, t: u32| bodies[i].body.mesh().triangles()[t as usize];
     let (a, b) = (corners(0, pair.triangle_a), corners(1, pair.triangle_b));
     let side = |t: [u32; 3], k: u8| {
         let (v, w) = (t[k as usize % 3], t[(k as usize + 1) % 3]);
         [v.min(w), v.max(w)]
     };
+    let vertex_face = |k: u8| FeaturePair::VertexFace { vertex: a[k as usize % 3], face: pair.triangle_b };
+    let face_vertex = |k: u8| FeaturePair::FaceVertex { face: pair.triangle_a, vertex: b[k as usize % 3] };
     match (pair.detail.feature_a, pair.detail.feature_b) {
-        (TriangleFeature::Vertex(k), TriangleFeature::Face) => {
-            Some(FeaturePair::VertexFace { vertex: a[k as usize % 3], face: pair.triangle_b })
-        }
-        (TriangleFeature::Face, TriangleFeature::Vertex(k)) => {
-            Some(FeaturePair::FaceVertex { face: pair.triangle_a, vertex: b[k as usize % 3] })
-        }
         (TriangleFeature::Edge(k), TriangleFeature::Edge(l)) => {
-            Some(FeaturePair::EdgeEdge { edge_a: side(a, k), edge_b: side(b, l) })
+            FeaturePair::EdgeEdge { edge_a: side(a, k), edge_b: side(b, l) }
         }
-        _ => None,
+        (TriangleFeature::Vertex(k), _) => vertex_face(k),
+        (_, TriangleFeature::Vertex(k)) => face_vertex(k),
+        (TriangleFeature::Face, _) => face_vertex(0),
+        (_, TriangleFeature::Face) => vertex_face(0),
     }
-}
-
-/// Any pair of features of the two triangles.
-fn any_feature(bodies: &[Moving<'_>; 2], pair: &ClosestPair) -> FeaturePair {
-    let vertex = bodies[0].body.mesh().triangles()[pair.triangle_a as usize][0];
-    FeaturePair::VertexFace { vertex, face: pair.triangle_b }
 }

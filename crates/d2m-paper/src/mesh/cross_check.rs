@@ -1,11 +1,12 @@
 //! Two implementations and a slow oracle that must agree about a scene.
 
-use super::distance::enclose_distance;
-use super::{Moving, SphereTree, time_of_contact};
+use super::distance::{ClosestPair, enclose_distance};
+use super::{Moving, SphereTree, in_boxes, time_of_contact};
 use crate::feature::RelativeMotion;
-use d2m_bvh::{MeshTree, QueryOptions, TimeOfContact, TriMesh, Window};
+use d2m_bvh::{QueryOptions, TimeOfContact, TriMesh, Window};
 use d2m_interval::Interval;
 use d2m_motion::{ConstantTwist, RigidMotion};
+use glam::DVec3;
 
 /// What [`cross_check`] found, of one scene or of several.
 ///
@@ -93,13 +94,8 @@ impl CheckedScene {
     fn judge(&self, report: &mut CrossCheck, name: &str) {
         let [a, b]: [Moving<'_>; 2] =
             core::array::from_fn(|i| Moving::new(&self.trees[i], &self.motions[i] as &dyn RigidMotion));
-        let engines = self.trees.each_ref().map(|t| MeshTree::new(t.mesh().clone()));
-        let engine = d2m_bvh::time_of_contact(
-            d2m_bvh::Moving::new(&engines[0], &self.motions[0]),
-            d2m_bvh::Moving::new(&engines[1], &self.motions[1]),
-            self.window,
-            &self.options,
-        );
+        let [of_a, of_b] = [a, b].map(in_boxes);
+        let engine = d2m_bvh::time_of_contact(of_a, of_b, self.window, &self.options);
         let reference = time_of_contact(a, b, self.window, &self.options);
         let answers = match (engine, reference) {
             (Ok(e), Ok(r)) => [("engine", e), ("reference", r)],
@@ -144,7 +140,7 @@ impl Oracle<'_> {
         let place = self.relative.placement(t);
         let mut meet = false;
         super::distance::visit_close_pairs(self.a.body, self.b.body, &place, 1e-9, |pair| {
-            meet |= pair.detail.upper == 0.0 && super::start::is_crossing(self.b.body, pair, margin);
+            meet |= pair.detail.upper == 0.0 && is_crossing(self.b.body, pair, margin);
             if meet { f64::NEG_INFINITY } else { f64::INFINITY }
         });
         meet
@@ -252,6 +248,34 @@ impl Oracle<'_> {
         });
         (drift + turn.sum::<f64>()).max(f64::MIN_POSITIVE)
     }
+}
+
+/// Does an edge of one triangle pass through the other one, reaching more than `margin` to both sides and crossing it
+/// more than `margin` from its outline? An estimate.
+fn is_crossing(b: &SphereTree, pair: &ClosestPair, margin: f64) -> bool {
+    let corners_b = b.corners(pair.triangle_b);
+    let passes = |edges: &[DVec3; 3], face: &[DVec3; 3]| {
+        (0..3).any(|i| passes_through(edges[i], edges[(i + 1) % 3], face, margin + pair.rounding))
+    };
+    passes(&pair.corners_a, &corners_b) || passes(&corners_b, &pair.corners_a)
+}
+
+/// Does the segment reach more than `margin` to either side of the face, and cross it well inside? An estimate.
+fn passes_through(p: DVec3, q: DVec3, face: &[DVec3; 3], margin: f64) -> bool {
+    let [a, b, c] = *face;
+    let normal = (b - a).cross(c - a);
+    let length = normal.length();
+    if length == 0.0 {
+        return false;
+    }
+    let n = normal / length;
+    let (s, t) = ((p - a).dot(n), (q - a).dot(n));
+    if s.min(t) >= -margin || s.max(t) <= margin {
+        return false;
+    }
+    let x = p + (q - p) * (s / (s - t));
+    let turn = |u: DVec3, v: DVec3| (v - u).cross(x - u).dot(n) / (v - u).length();
+    turn(a, b).min(turn(b, c)).min(turn(c, a)) > margin
 }
 
 #[cfg(test)]

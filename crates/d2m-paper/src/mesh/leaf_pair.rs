@@ -6,7 +6,6 @@ use crate::feature::{
     EdgePair, PaperOptions, PointFace, PointJet, RelativeFrame, RelativeMotion, TriangleFace, boxes_meet,
 };
 use d2m_bvh::{Exhausted, Meter};
-use d2m_feature::FeaturePair;
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_root::RootSearch;
 use glam::DVec3;
@@ -16,7 +15,7 @@ use glam::DVec3;
 pub(crate) struct Candidate {
     /// No contact of the pair before `bracket.lo()`.
     pub(crate) bracket: Interval,
-    pub(crate) feature: FeaturePair,
+    /// A triangle of B at the features that meet.
     pub(crate) triangle_b: u32,
     /// The search of the pair met its budget: nothing is known from `bracket.lo()` on.
     pub(crate) undecided: bool,
@@ -102,12 +101,11 @@ impl LeafPair<'_> {
                 meter.step()?;
                 let options = self.options.with_evaluations(evaluations(meter));
                 let mut pair = PointFace::new(motion, point, plane, jet, &options);
-                let (feature, triangle_b) = match points_of {
-                    PointsOf::A => (FeaturePair::VertexFace { vertex, face }, face),
-                    PointsOf::B => (FeaturePair::FaceVertex { face, vertex }, triangle),
+                let triangle_b = match points_of {
+                    PointsOf::A => face,
+                    PointsOf::B => triangle,
                 };
-                let found = pair.first_contact(searched);
-                lower(best, found, feature, triangle_b);
+                lower(best, pair.first_contact(searched), triangle_b);
                 charge(meter, pair.evaluated())?;
             }
         }
@@ -148,9 +146,7 @@ impl LeafPair<'_> {
                 };
                 meter.step()?;
                 pair.set_max_evaluations(evaluations(meter));
-                let feature = FeaturePair::EdgeEdge { edge_a, edge_b };
-                let found = pair.first_contact(searched);
-                lower(best, found, feature, triangle_b);
+                lower(best, pair.first_contact(searched), triangle_b);
                 charge(meter, pair.evaluated())?;
             }
         }
@@ -167,14 +163,14 @@ pub(crate) fn still_open(searched: Interval, best: Option<&Candidate>) -> Option
     }
 }
 
-fn lower(best: &mut Option<Candidate>, found: RootSearch, feature: FeaturePair, triangle_b: u32) {
+fn lower(best: &mut Option<Candidate>, found: RootSearch, triangle_b: u32) {
     let (bracket, undecided) = match found {
         RootSearch::None => return,
         RootSearch::Bracket(bracket) => (bracket, false),
         RootSearch::Undecided { clear_until } => (Interval::point(clear_until), true),
     };
     if best.as_ref().is_none_or(|known| bracket.lo() < known.bracket.lo()) {
-        *best = Some(Candidate { bracket, feature, triangle_b, undecided });
+        *best = Some(Candidate { bracket, triangle_b, undecided });
     }
 }
 

@@ -2,7 +2,8 @@
 //!
 //! Sphere trees ([`SphereTree`]), Test-Sphere-Pair, Traverse-Tree-Pair over a subdivided time domain, feature tests by
 //! the second-order root finder, and a certified step back. It answers the same question as the default engine with
-//! the same types and shares no search code with it, so each is a check of the other.
+//! the same types and shares no search over time with it, so each is a check of the other. How the bodies stand at the start
+//! of the window the paper does not ask: that is judged as by the default engine.
 
 mod answer;
 mod budget;
@@ -11,7 +12,6 @@ mod cross_check;
 mod distance;
 mod leaf_pair;
 mod sphere_tree;
-mod start;
 mod step_back;
 mod stretch;
 mod traverse;
@@ -20,9 +20,11 @@ pub use cross_check::{CrossCheck, cross_check};
 pub use sphere_tree::SphereTree;
 
 use crate::feature::{PaperOptions, RelativeMotion};
-use d2m_bvh::{Meter, QueryError, QueryOptions, Solid, TimeOfContact, Window};
+use d2m_bvh::{
+    Answered, MeshTree, Meter, Mode, QueryError, QueryOptions, Solid, Start, TimeOfContact, Window,
+    time_of_contact_counted,
+};
 use d2m_interval::Interval;
-use start::{Start, classify_start};
 use traverse::Search;
 
 /// δ where the options give none, in units of the larger radius: the documented default.
@@ -47,9 +49,11 @@ pub type Moving<'a> = d2m_bvh::Moving<'a, SphereTree>;
 ///
 /// Promise: as [`TimeOfContact`] says, for every motion whose enclosures are right. Separation left at `time_lo`: in
 /// \[δ, 3δ\] (measured there), where doubles of time are fine enough to choose it. In [`Mode::Capoeira`](d2m_bvh::Mode)
-/// the search stops at leaf spheres: `time_lo` is certified free, `time_hi` the end of the overlap of the two spheres,
-/// `separation` what is left at `time_lo`, and a true contact may be missing. [`Mode::Exists`](d2m_bvh::Mode) is answered
-/// like the accurate mode. A positive `min_separation` is not supported and answered as undecided from the start.
+/// the search stops at leaf spheres: `time_lo` is certified free, `separation` what is left there, and a true contact may be missing.
+/// `time_hi` is the end of the root's bracket, or of the overlap of the two spheres, where the bodies are measured to be within δ of each other then, and
+/// `time_lo` otherwise. [`Mode::Exists`](d2m_bvh::Mode) is answered
+/// like the accurate mode. A positive `min_separation`, bodies with a radius and [`Start::Leave`] are not supported and answered
+/// as undecided from the start.
 ///
 /// # Errors
 /// [`QueryError`] for a tolerance that is not positive and finite, a filled solid whose mesh does not close, or a
@@ -85,7 +89,8 @@ pub fn time_of_contact(
     let relative = RelativeMotion::new(a.motion, b.motion);
     let undecided = |clear_until: f64| Ok(TimeOfContact::Undecided { clear_until });
     let (t0, t1) = (window.start(), window.end());
-    if options.min_separation > 0.0 {
+    let is_rounded = bodies.iter().any(|body| body.radius > 0.0);
+    if options.min_separation > 0.0 || is_rounded || options.start == Start::Leave {
         return undecided(t0);
     }
     let mut meter = Meter::new(&options.budget).at_most(budget::MOST_TESTS);
@@ -94,15 +99,11 @@ pub fn time_of_contact(
     }
     let span = Interval::new(t0, t1);
     let tolerance = tolerance.max(4.0 * stretch::bound_rounding(&bodies, &relative, span));
-    let places = [relative.placement(t0), relative.swapped().placement(t0)];
-    match classify_start(a.body, b.body, &places, tolerance, bodies.map(|body| body.solid_in(options))) {
-        Start::Apart => {}
-        Start::Meeting(state, pair) => {
-            return Ok(TimeOfContact::Contact(answer::contact_at_start(
-                &bodies, t0, tolerance, state, &pair,
-            )));
-        }
-        Start::Unknown => return undecided(t0),
+    let as_asked = options.with_tolerance(tolerance).with_mode(Mode::Accurate).with_budget(meter.rest());
+    let at_start = start_of(bodies, t0, &as_asked)?;
+    meter.spend(at_start.work.work());
+    if !at_start.answer.is_separated() {
+        return Ok(at_start.answer);
     }
     let features = PaperOptions::DEFAULT.with_tolerance(0.5 * tolerance);
     let mut search = Search::new(bodies, features, options.mode, meter);
@@ -122,6 +123,23 @@ pub fn time_of_contact(
             found.map_or_else(|| undecided(best.bracket.lo()), |contact| Ok(TimeOfContact::Contact(contact)))
         }
     }
+}
+
+/// How the bodies stand at this time: the answer of the default engine about a window that is nothing else.
+fn start_of(
+    bodies: [Moving<'_>; 2],
+    time: f64,
+    options: &QueryOptions,
+) -> Result<Answered<TimeOfContact>, QueryError> {
+    let [a, b] = bodies.map(in_boxes);
+    let now = Window::try_new(time, time).expect("the start of a window is a time");
+    time_of_contact_counted(a, b, now, options)
+}
+
+/// The body as the default engine has it.
+fn in_boxes(body: Moving<'_>) -> d2m_bvh::Moving<'_, MeshTree> {
+    let Moving { body, motion, solid, radius } = body;
+    d2m_bvh::Moving { body: body.boxes(), motion, solid, radius }
 }
 
 /// Checks the input and returns the tolerance of the options, or the default one.

@@ -1,10 +1,9 @@
 //! The augmented R-tree of the paper (section VI-A): beams subdivided to a smallest rib, with the minimal enclosing
 //! sphere of the raw geometry at every node.
 
-use d2m_bvh::{EnclosingSphere, Topology, TriMesh};
-use d2m_mesh::DisjointSets;
+use d2m_bvh::{EnclosingSphere, MeshTree, Topology, TriMesh};
 use glam::DVec3;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 /// A node: the smallest sphere around its raw geometry, and two children or the content of a leaf.
 #[derive(Clone, Copy, Debug)]
@@ -77,13 +76,10 @@ pub(crate) struct OwnedEdge {
 /// ```
 #[derive(Clone, Debug)]
 pub struct SphereTree {
-    mesh: TriMesh,
+    /// The mesh, and the tree by which the start of a window is judged.
+    boxes: MeshTree,
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
-    watertight: bool,
-    oriented: bool,
-    component_vertices: Vec<u32>,
-    counted: Vec<bool>,
 }
 
 impl SphereTree {
@@ -115,20 +111,17 @@ impl SphereTree {
         build.node(&mut triangles);
         let (nodes, mut leaves) = (build.nodes, build.leaves);
         assign_features(&mesh, &topology, &mut leaves);
-        Self {
-            watertight: topology.is_watertight(),
-            oriented: topology.is_consistently_oriented(),
-            component_vertices: component_vertices(&mesh, &topology),
-            counted: counted_triangles(&mesh, &topology),
-            mesh,
-            nodes,
-            leaves,
-        }
+        Self { boxes: MeshTree::new(mesh), nodes, leaves }
     }
 
     /// The mesh.
     pub const fn mesh(&self) -> &TriMesh {
-        &self.mesh
+        self.boxes.mesh()
+    }
+
+    /// The same mesh as the default engine has it.
+    pub(crate) const fn boxes(&self) -> &MeshTree {
+        &self.boxes
     }
 
     /// The number of leaves.
@@ -148,12 +141,7 @@ impl SphereTree {
 
     /// Does the surface close?
     pub const fn is_watertight(&self) -> bool {
-        self.watertight
-    }
-
-    /// Does the surface agree about its outside?
-    pub(crate) const fn is_consistently_oriented(&self) -> bool {
-        self.oriented
+        self.boxes.is_watertight()
     }
 
     pub(crate) fn node(&self, index: u32) -> &Node {
@@ -165,21 +153,11 @@ impl SphereTree {
     }
 
     pub(crate) fn vertex(&self, index: u32) -> DVec3 {
-        self.mesh.vertices()[index as usize]
+        self.mesh().vertices()[index as usize]
     }
 
     pub(crate) fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.mesh.corners(triangle as usize)
-    }
-
-    /// One vertex of each connected component of the surface.
-    pub(crate) fn component_vertices(&self) -> &[u32] {
-        &self.component_vertices
-    }
-
-    /// Does the triangle count in a parity test? Collapsed triangles and repetitions do not.
-    pub(crate) fn is_counted(&self, triangle: u32) -> bool {
-        self.counted[triangle as usize]
+        self.mesh().corners(triangle as usize)
     }
 }
 
@@ -275,39 +253,4 @@ fn assign_features(mesh: &TriMesh, topology: &Topology, leaves: &mut [Leaf]) {
             }
         }
     }
-}
-
-/// One vertex of each connected component.
-fn component_vertices(mesh: &TriMesh, topology: &Topology) -> Vec<u32> {
-    let mut components = DisjointSets::new(mesh.vertex_count());
-    for t in mesh.triangles() {
-        components.join(t.map(|v| topology.representative(v)));
-    }
-    let mut seen = HashMap::new();
-    for t in mesh.triangles() {
-        let r = components.root(topology.representative(t[0]));
-        seen.entry(r).or_insert(t[0]);
-    }
-    let mut vertices: Vec<u32> = seen.into_values().collect();
-    vertices.sort_unstable();
-    vertices
-}
-
-/// All triangles but those with two equal vertices and repetitions of an earlier one, as in [`Topology`].
-fn counted_triangles(mesh: &TriMesh, topology: &Topology) -> Vec<bool> {
-    let mut seen = HashSet::new();
-    mesh.triangles()
-        .iter()
-        .map(|t| {
-            let [a, b, c] = t.map(|v| topology.representative(v));
-            let turned = if a < b && a < c {
-                [a, b, c]
-            } else if b < c {
-                [b, c, a]
-            } else {
-                [c, a, b]
-            };
-            a != b && b != c && c != a && seen.insert(turned)
-        })
-        .collect()
 }

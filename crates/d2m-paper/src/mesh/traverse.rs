@@ -7,7 +7,6 @@ use crate::feature::{
     BodyOverDomain, PaperOptions, PointJet, RelativeMotion, SphereOverDomain, boxes_meet, test_sphere_pair,
 };
 use d2m_bvh::{Meter, Mode};
-use d2m_feature::FeaturePair;
 use d2m_interval::Interval;
 
 /// The budget ran out: no contact before this time.
@@ -165,7 +164,7 @@ impl<'a> Search<'a> {
         let stopped = Stopped { clear_until: span.lo() };
         if node_a.is_leaf() && node_b.is_leaf() {
             if self.mode == Mode::Capoeira {
-                self.offer_leaf_pair(span, a, b);
+                self.offer_leaf_pair(span, b);
                 return Ok(());
             }
             if !self.triangles_may_meet(tree_a.leaf(node_a), tree_b.leaf(node_b), span) {
@@ -221,14 +220,11 @@ impl<'a> Search<'a> {
     }
 
     /// Capoeira mode: the start of the overlap of two leaves stands for the contact of their content.
-    fn offer_leaf_pair(&mut self, span: Interval, a: u32, b: u32) {
-        let (tree_a, tree_b) = (self.bodies[0].body, self.bodies[1].body);
-        let leaf_a = tree_a.leaf(tree_a.node(a));
+    fn offer_leaf_pair(&mut self, span: Interval, b: u32) {
+        let tree_b = self.bodies[1].body;
         let triangle_b = tree_b.leaf(tree_b.node(b)).triangles[0];
-        let vertex = leaf_a.vertices[0];
-        let feature = FeaturePair::VertexFace { vertex, face: triangle_b };
         if still_open(span, self.best.as_ref()).is_some() {
-            self.best = Some(Candidate { bracket: span, feature, triangle_b, undecided: false });
+            self.best = Some(Candidate { bracket: span, triangle_b, undecided: false });
         }
     }
 }

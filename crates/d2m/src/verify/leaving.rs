@@ -29,9 +29,9 @@ pub fn departure_claim(
         return Ok(Claim::All(Vec::new()));
     }
     let scale = Scale::new(bodies, window, options, window.start());
-    let within = |time: f64| Claim::Within {
+    let within = |time: f64, tolerances: f64| Claim::Within {
         span: at(time),
-        distance: options.min_separation + scale.most,
+        distance: options.min_separation + tolerances * scale.most,
         triangles: None,
     };
     let every = resolvable(window, RESOLUTION * window.length());
@@ -44,7 +44,8 @@ pub fn departure_claim(
     match answer.start {
         StartState::Apart => {}
         StartState::Contained => claims.push(Claim::Held { time: window.start() }),
-        _ => claims.push(within(window.start())),
+        // As at any time of contact.
+        _ => claims.push(within(window.start(), MOST_LEFT)),
     }
     let Some(left) = answer.left else {
         match answer.answer {
@@ -53,7 +54,8 @@ pub fn departure_claim(
                 if contact.start == answer.start && contact.start != StartState::Apart =>
             {
                 claims.push(contact_claim(bodies, window, options, &answer.answer, None)?);
-                claims.extend([within(window.end()), stay_until(window.end())]);
+                // Where they are not proven to have left.
+                claims.extend([within(window.end(), MOST_LEFT), stay_until(window.end())]);
             }
             TimeOfContact::Undecided { clear_until } if clear_until == window.start() => {
                 claims.extend(start_claim(bodies, window, options, answer.start)?);
@@ -73,7 +75,8 @@ pub fn departure_claim(
         claims.push(Claim::Clear { span: at(window.start()), distance: options.min_separation });
     } else {
         claims.extend(start_claim(bodies, window, options, answer.start)?);
-        claims.push(within(left.lo));
+        // From a time on at which they are proven within s + δ; if there is none, from the start.
+        claims.push(within(left.lo, if left.lo == window.start() { MOST_LEFT } else { 1.0 }));
         // Further apart than s + δ, with δ at least as it was asked for.
         claims.push(Claim::Clear { span: at(left.hi), distance: options.min_separation + scale.asked });
         claims.push(stay_until(left.hi));
