@@ -1,8 +1,9 @@
 //! Bodies that are inside others when the query begins.
 
 use d2m_bvh::{
-    MeshTree, Moving, PairCache, Posed, QueryError, QueryOptions, Solid, StartState, TimeOfContact, TriMesh,
-    Window, departure, distance, time_of_contact, time_of_contact_with,
+    MeshTree, Moving, PairCache, Posed, QueryError, QueryOptions, Solid, SpanStatus, StartState,
+    TimeOfContact, TriMesh, Window, contact_spans, departure, distance, time_of_contact,
+    time_of_contact_with,
 };
 use d2m_motion::{ConstantTwist, RigidMotion};
 use d2m_testing::{Draw, KnuthRandom, Surface};
@@ -146,4 +147,25 @@ fn starts_are_what_the_distance_says() {
         assert!(agree || start == StartState::Undecided, "round {round}: {state:?}, {start:?}");
     }
     assert!(held > 200, "{held}");
+}
+
+/// What is held at the start, at any distance from the wall and with any tolerance, is in contact from then on: also where the search for the
+/// contact comes to a bracket in the middle of the window.
+#[test]
+fn spans_of_what_is_held_begin_with_the_window() {
+    let mut random = KnuthRandom(5);
+    let large = cube(0.5);
+    for case in 0..1500 {
+        let half = 0.02 + 0.2 * random.unit();
+        let small = cube(half);
+        let mut vector = || DVec3::from_array([(); 3].map(|()| random.signed()));
+        let (place, velocity, spin) = (vector() * (0.5 - half) * 0.99, vector(), vector());
+        let going = ConstantTwist::REST.with_position(place);
+        let going = if case % 3 > 0 { going.with_linear_velocity(velocity) } else { going };
+        let going = if case % 2 > 0 { going.with_angular_velocity(spin) } else { going };
+        let options = QueryOptions::default().with_tolerance(10f64.powf(-3.0 + 2.5 * random.unit()));
+        let [a, b] = [Moving::new(&large, &ConstantTwist::REST), Moving::new(&small, &going)];
+        let spans = contact_spans(a, b, Window::UNIT, &options, None).unwrap();
+        assert_eq!((spans[0].from, spans[0].status), (0.0, SpanStatus::Contact), "{case}: {spans:?}");
+    }
 }

@@ -290,11 +290,15 @@ impl Search<'_> {
             // The bracket proves it of one of its times, whether or not a given one does, unless that is a tolerance beyond the level's.
             let proves = contact.evidence == Evidence::Crossing || contact.tolerance <= self.tolerance;
             let is_single = lo == hi && proves;
-            if self.walk.is_within(hi) || is_single {
-                return Ok(self.met_at(hi));
+            // What is in contact where the search begins is so long before a bracket that the search came to since.
+            let times = if hi - lo > resolution { [lo, hi] } else { [hi, lo] };
+            for time in times {
+                if self.walk.is_within(time) {
+                    return Ok(self.met_at(time));
+                }
             }
-            if self.walk.is_within(lo) {
-                return Ok(self.met_at(lo));
+            if is_single {
+                return Ok(self.met_at(hi));
             }
             if proves && hi - lo <= resolution {
                 self.push(hi, SpanStatus::Contact);
