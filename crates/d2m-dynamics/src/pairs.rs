@@ -194,23 +194,57 @@ pub(crate) fn fly(
     let mut separation = pair.separation();
     let least = LEAST * pair.gap.min(WIDE * size([a, b]));
     while separation >= least {
-        let options = QueryOptions::default()
-            .with_solid(solid_of(a, b))
-            .with_min_separation(separation)
-            .with_tolerance(SLACK * separation)
-            .with_budget(Budget::UNLIMITED.with_node_tests(node_tests));
-        let [one, two] = [a, b].map(|body| Moving::new(&*body.tree, &body.flight).with_radius(body.rounding));
-        match time_of_contact_with(one, two, window, &options, &mut pair.cache)? {
+        match first_meeting([a, b], window, separation, node_tests, &mut pair.cache)? {
             TimeOfContact::Separated => return Ok(Outcome::Clear),
             TimeOfContact::Undecided { clear_until } => return Ok(Outcome::ClearUntil(clear_until)),
             TimeOfContact::Contact(contact) => match contact.start {
-                StartState::Apart => return Ok(met(&contact)),
+                StartState::Apart => {
+                    let wider =
+                        met_with_room([a, b], window.start(), &contact, node_tests, pair, separation)?;
+                    return Ok(met(&wider.unwrap_or(contact)));
+                }
                 StartState::Touching => separation *= HALF,
                 _ => return Ok(Outcome::Stuck),
             },
         }
     }
     Ok(Outcome::Stuck)
+}
+
+/// When two bodies come within this separation in their flights.
+fn first_meeting(
+    bodies: [&RigidBody; 2],
+    window: Window,
+    separation: f64,
+    node_tests: u64,
+    cache: &mut PairCache,
+) -> Result<TimeOfContact, QueryError> {
+    let options = QueryOptions::default()
+        .with_solid(solid_of(bodies[0], bodies[1]))
+        .with_min_separation(separation)
+        .with_tolerance(SLACK * separation)
+        .with_budget(Budget::UNLIMITED.with_node_tests(node_tests));
+    let [one, two] = bodies.map(|body| Moving::new(&*body.tree, &body.flight).with_radius(body.rounding));
+    time_of_contact_with(one, two, window, &options, cache)
+}
+
+/// The meeting of bodies that were closer than flights may end, and have parted on the way to it, as what rattles on a pin: from there on their
+/// flights end where others do. `None`: they have not parted so far.
+fn met_with_room(
+    bodies: [&RigidBody; 2],
+    start: f64,
+    contact: &Contact,
+    node_tests: u64,
+    pair: &mut Pair,
+    separation: f64,
+) -> Result<Option<Contact>, QueryError> {
+    let wide = STOP * pair.gap;
+    if separation >= wide {
+        return Ok(None);
+    }
+    let rest = Window::try_new(start + 0.5 * (contact.time_lo - start), contact.time_lo)?;
+    let found = first_meeting(bodies, rest, wide, node_tests, &mut pair.cache)?;
+    Ok(found.contact().filter(|found| found.start == StartState::Apart).copied())
 }
 
 /// Until when the bodies stay apart by more than a query would call met, as follows from their distance, along a direction or from an axis: a query
