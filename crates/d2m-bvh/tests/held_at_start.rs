@@ -5,7 +5,7 @@ use d2m_bvh::{
     TimeOfContact, TriMesh, Window, contact_spans, departure, distance, time_of_contact,
     time_of_contact_with,
 };
-use d2m_motion::{ConstantTwist, RigidMotion};
+use d2m_motion::{ConstantTwist, Pose, RigidMotion};
 use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
 
@@ -79,7 +79,7 @@ fn a_sheet_inside_a_solid_is_held() {
 #[test]
 fn a_body_near_the_wall_of_the_other_is_held() {
     let (large, small) = (cube(0.5), cube(0.125));
-    for (room, separation) in [(0.0625, 0.125), (0.5f64.powi(37), 0.0)] {
+    for (room, separation) in [(0.0625, 0.125), (0.5f64.powi(37), 0.0), (0.5f64.powi(46), 0.0)] {
         let inner = ConstantTwist::REST
             .with_position(DVec3::X * (0.375 - room))
             .with_linear_velocity(DVec3::X * -0.25);
@@ -97,6 +97,70 @@ fn a_body_near_the_wall_of_the_other_is_held() {
             assert_eq!(contact.start, StartState::Touching, "{contact:?}");
             assert!((contact.separation - room).abs() < 1e-12);
         }
+    }
+}
+
+/// What is held nearer to a wall than bodies that touch are moved to part, and further than rounding reaches, is held: a solid, a sheet, of which no part is
+/// inside, and a grain that is smaller than that way, which parts through the wall. The distance says the same.
+#[test]
+fn what_is_held_nearer_than_bodies_part_is_held() {
+    let (large, small, grain) = (cube(2.0), cube(0.125), cube(0.5f64.powi(41)));
+    let corners = vec![DVec3::new(0.125, 0.0, 0.0), DVec3::new(0.0, 0.1, 0.0), DVec3::new(0.0, 0.0, 0.1)];
+    let sheet = MeshTree::new(TriMesh::try_new(corners, vec![[0, 1, 2]]).unwrap());
+    let room = 0.5f64.powi(39);
+    let turn = DQuat::from_xyzw(0.1, -0.2, 0.3, 0.9).normalize();
+    let bodies = [
+        (&small, 0.125, Solid::Filled),
+        (&sheet, 0.125, Solid::Surface),
+        (&grain, 0.5f64.powi(41), Solid::Filled),
+    ];
+    for ((tree, reach, solid), turn) in bodies
+        .into_iter()
+        .zip([DQuat::IDENTITY, turn].into_iter().cycle())
+        .chain(bodies.into_iter().zip([turn, DQuat::IDENTITY].into_iter().cycle()))
+    {
+        let place = turn * (DVec3::X * (2.0 - reach - room));
+        let inner = ConstantTwist::REST.with_position(place).with_orientation(turn);
+        let outer = ConstantTwist::REST.with_orientation(turn);
+        let [a, b] = [Moving::new(tree, &inner).with_solid(solid), Moving::new(&large, &outer)];
+        for [a, b] in [[a, b], [b, a]] {
+            let answer = time_of_contact(a, b, Window::UNIT, &QueryOptions::default()).unwrap();
+            let contact = answer.contact().unwrap_or_else(|| panic!("{answer:?}"));
+            assert_eq!(
+                (contact.start, contact.separation),
+                (StartState::Contained, 0.0),
+                "{reach} {contact:?}"
+            );
+            let departed = departure(a, b, Window::UNIT, &QueryOptions::default()).unwrap();
+            assert_eq!(departed.start, StartState::Contained, "{departed:?}");
+        }
+        let posed = [(tree, place), (&large, DVec3::ZERO)].map(|(tree, translation)| {
+            Posed::new(tree, Pose { translation, rotation: turn, ..Pose::IDENTITY })
+        });
+        let found = distance(posed[0], posed[1], [solid, Solid::Filled]).unwrap();
+        assert_eq!(found.state, StartState::Contained, "{found:?}");
+    }
+}
+
+/// In units so small that underflow takes a part of all lengths, triangles that the search proves to cross still do: the bodies overlap, and nothing is
+/// between them.
+#[test]
+fn what_is_proven_to_cross_overlaps_in_any_unit() {
+    for power in [0, -300, -600, -900] {
+        let unit = 2f64.powi(power);
+        let (large, small) = (cube(unit), cube(0.25 * unit));
+        let place = DVec3::new(1.0, 0.3, -0.2) * unit;
+        let crossing = ConstantTwist::REST
+            .with_position(place)
+            .with_orientation(DQuat::from_xyzw(0.1, -0.2, 0.3, 0.9).normalize());
+        let [a, b] = [Moving::new(&large, &ConstantTwist::REST), Moving::new(&small, &crossing)];
+        let answer = time_of_contact(a, b, Window::UNIT, &QueryOptions::default()).unwrap();
+        let contact = answer.contact().unwrap_or_else(|| panic!("{answer:?}"));
+        assert_eq!(
+            (contact.start, contact.separation),
+            (StartState::Overlapping, 0.0),
+            "{power}: {contact:?}"
+        );
     }
 }
 

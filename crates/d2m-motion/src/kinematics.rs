@@ -278,6 +278,47 @@ impl Kinematics {
         }
     }
 
+    /// The same set with lengths times `factor`, a power of two: exact but for what over- or underflows. Where the body point cannot be
+    /// multiplied exactly, or by another factor, nothing is known but the rotation and its rates.
+    ///
+    /// ```
+    /// use d2m_motion::{Ball, Kinematics};
+    /// use glam::DVec3;
+    /// let tiny = Kinematics { position: Ball::new(DVec3::X * 3e-200, 1e-210), ..Kinematics::REST };
+    /// let factor = f64::from_bits(1600 << 52); // 2⁵⁷⁷
+    /// let found = tiny.in_unit_of_length(factor);
+    /// assert_eq!(found.position.center, DVec3::X * 3e-200 * factor);
+    /// assert_eq!(tiny.in_unit_of_length(3.0).position, Ball::ANY);
+    /// ```
+    #[must_use]
+    pub fn in_unit_of_length(&self, factor: f64) -> Self {
+        let inverse = factor.recip();
+        let is_exact = |v: DVec3| (v * factor) * inverse == v && (v * factor).is_finite();
+        let is_power =
+            factor.is_normal() && inverse.is_normal() && factor.to_bits() << 12 == 0 && factor > 0.0;
+        let times = |ball: Ball| {
+            if !(is_power && is_exact(self.at) && ball.radius >= 0.0) {
+                return Ball::ANY;
+            }
+            let (center, radius) = (ball.center * factor, ball.radius * factor);
+            // What underflows is off by half of the least number in each component.
+            let lost = if is_exact(ball.center) { 0.0 } else { f64::MIN_POSITIVE };
+            let is_kept = radius * inverse == ball.radius && lost == 0.0;
+            Ball::new(center, if is_kept { radius } else { up(radius + f64::MIN_POSITIVE) })
+        };
+        let tail = self.position_tail * factor;
+        let is_tail = is_exact(self.position_tail);
+        let position = if is_tail { self.position } else { self.position + Ball::point(self.position_tail) };
+        Self {
+            position: times(position),
+            position_tail: if is_tail { tail } else { DVec3::ZERO },
+            at: self.at * factor,
+            linear: times(self.linear),
+            linear_rate: times(self.linear_rate),
+            ..*self
+        }
+    }
+
     /// A set that contains this one and another (of the same reference point).
     #[must_use]
     pub fn hull(&self, other: &Self) -> Self {

@@ -92,6 +92,21 @@ impl CertifiedState {
         Kinematics::from_state(self).following(at).state_about(DVec3::ZERO)
     }
 
+    /// The same state with lengths times `factor`, a power of two: see [`Kinematics::in_unit_of_length`].
+    ///
+    /// ```
+    /// use d2m_motion::{ConstantTwist, RigidMotion};
+    /// use glam::DVec3;
+    /// let moving = ConstantTwist::REST.with_position(DVec3::X).with_linear_velocity(DVec3::Y);
+    /// let half = moving.enclose_state(0.0).in_unit_of_length(0.5);
+    /// assert!((half.position - DVec3::X * 0.5).length() <= half.position_radius && half.position_radius < 1e-15);
+    /// assert!((half.linear - DVec3::Y * 0.5).length() <= half.linear_radius);
+    /// ```
+    #[must_use]
+    pub fn in_unit_of_length(&self, factor: f64) -> Self {
+        Kinematics::from_state(self).in_unit_of_length(factor).state_about(DVec3::ZERO)
+    }
+
     /// The motion that has this state (its middle) at time `t` and keeps its twist. `None` where the middle is not finite.
     ///
     /// The rotation of the quaternion is known within 36u (Frobenius norm), and so is how far it is from the middle.

@@ -427,3 +427,56 @@ fn kinematics_are_enclosed_in_any_unit_of_time() {
         assert_eq!(wrong.in_unit_of_time(1.0, 0.0).linear.radius, f64::INFINITY);
     }
 }
+
+/// In another unit of length the same vectors, exactly but for what underflows, and nothing where the factor is no power of two.
+#[test]
+fn sets_in_another_unit_of_length_are_the_same() {
+    let mut random = Random(91);
+    for round in 0..400 {
+        let size = 2f64.powi([0, -500, 180, -1020][round % 4]);
+        let factor = 2f64.powi([3, 600, -400, -60, 1000][round % 5]);
+        let mut ball = |part: f64| Ball::new(random.vector() * size, random.unit() * size * part);
+        let known = Kinematics {
+            position: ball(1e-2),
+            position_tail: ball(0.0).center * 1e-17,
+            linear: ball(0.0),
+            linear_rate: ball(1e-3),
+            angular: Ball::point(DVec3::X),
+            ..Kinematics::REST
+        };
+        let found = known.in_unit_of_length(factor);
+        assert_eq!((found.angular, found.angular_rate), (known.angular, known.angular_rate));
+        // Halves of both powers, so that neither over- nor underflows.
+        let back = |ball: Ball, tail: DVec3| {
+            let near = |v: DVec3| if factor > 1.0 { v } else { v / factor };
+            (near(ball.center), near(tail), if factor > 1.0 { ball.radius } else { ball.radius / factor })
+        };
+        let pairs = [
+            (known.position, known.position_tail, found.position, found.position_tail),
+            (known.linear, DVec3::ZERO, found.linear, DVec3::ZERO),
+            (known.linear_rate, DVec3::ZERO, found.linear_rate, DVec3::ZERO),
+        ];
+        for (before, tail, after, after_tail) in pairs {
+            if after.radius == f64::INFINITY {
+                assert!(length(before.center) * factor > 1e300, "{round}: {before:?} {factor:e}");
+                continue;
+            }
+            let by = if factor > 1.0 { factor } else { 1.0 };
+            let (center, after_tail, radius) = back(after, after_tail);
+            let off = length((center - before.center * by) + (after_tail - tail * by));
+            assert!(
+                off + before.radius * by <= radius * (1.0 + 1e-15),
+                "{round}: {before:?} {factor:e} {after:?}"
+            );
+            assert!(
+                radius
+                    <= before.radius * by * (1.0 + 1e-9)
+                        + 1e-15 * size * by
+                        + 4.0 * f64::MIN_POSITIVE / factor.min(1.0)
+            );
+        }
+        assert_eq!(known.in_unit_of_length(factor * 1.5).position.radius, f64::INFINITY);
+    }
+    let off_center = Kinematics { at: DVec3::X * f64::MIN_POSITIVE * 1.25, ..Kinematics::REST };
+    assert_eq!(off_center.in_unit_of_length(2f64.powi(-60)).position.radius, f64::INFINITY);
+}

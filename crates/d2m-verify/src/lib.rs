@@ -35,6 +35,7 @@ mod rates;
 // Proofs: surfaces, solids, claims.
 mod prove;
 mod solid;
+mod units;
 mod verify;
 
 pub use claim::{Body, Claim, Query, Reason, Solid, TimeSpan, Verdict};

@@ -87,6 +87,19 @@ impl Mesh {
         Ok(Self { vertices, triangles, center, nodes, order, surface: OnceLock::new() })
     }
 
+    /// The same mesh with other points, in the order of the old ones along each axis. `None`: a point, or the center, has no other.
+    pub(crate) fn try_map(&self, point: impl Fn(DVec3) -> Option<DVec3>) -> Option<Self> {
+        let node = |node: &Node| Some(Node { low: point(node.low)?, high: point(node.high)?, ..*node });
+        Some(Self {
+            vertices: self.vertices.iter().map(|&p| point(p)).collect::<Option<_>>()?,
+            triangles: self.triangles.clone(),
+            center: point(self.center)?,
+            nodes: self.nodes.iter().map(node).collect::<Option<_>>()?,
+            order: self.order.clone(),
+            surface: OnceLock::new(),
+        })
+    }
+
     /// How many triangles there are.
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()

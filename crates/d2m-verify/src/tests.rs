@@ -553,3 +553,46 @@ fn what_one_motion_carries_keeps_its_distance() {
         assert!(!is_verified(ask(motions, 0.0, 2.0, &clear(0.0))));
     }
 }
+
+/// A cube that comes down on another one that turns, about points beside their centers, in units of length from 1e-290 to 1e150: what is true is proven and
+/// what is not is refuted, at a distance in the unit of the query.
+#[test]
+fn claims_are_decided_in_any_unit_of_length() {
+    for power in [-960, -600, -330, -170, -80, 0, 80, 170, 330, 500] {
+        let unit = 2f64.powi(power);
+        let mesh = |low: f64, high: f64| cuboid(DVec3::splat(low) * unit, DVec3::splat(high) * unit);
+        let (lower, upper) = (mesh(0.25, 1.25), mesh(-1.5, -0.5));
+        let turning = ConstantTwist::REST
+            .with_position(DVec3::splat(0.75) * unit)
+            .with_at(DVec3::splat(0.75) * unit)
+            .with_angular_velocity(DVec3::Z * 2.0);
+        let falling = ConstantTwist::REST
+            .with_position(DVec3::new(2.0, 1.5, 3.75) * unit)
+            .with_linear_velocity(DVec3::Z * -2.0 * unit);
+        // From z = 1.25 up, and from 2.25 down by 2 a unit of time: they meet at 0.5.
+        let query =
+            Query { bodies: [body(&lower, &turning), body(&upper, &falling)], window: between(0.0, 1.0) };
+        let judged = |claim: Claim| verify(&query, &claim, STEPS);
+        let clear = |to: f64, distance: f64| {
+            judged(Claim::Clear { span: between(0.0, to), distance: distance * unit })
+        };
+        assert!(is_verified(clear(0.49, 0.01)) && is_verified(clear(0.25, 0.49)), "{power}");
+        let Verdict::Refuted { distance, .. } = clear(0.25, 0.51) else { panic!("{power}") };
+        assert!(
+            distance.lo() <= 0.51 * unit && distance.hi() >= 0.49 * unit && distance.hi() < 2.0 * unit,
+            "{power}: {distance:?}"
+        );
+        assert!(is_verified(judged(Claim::Overlapping { time: 0.75, triangles: [0, 0] })), "{power}");
+        let within = |distance: f64| {
+            judged(Claim::Within { span: between(0.0, 0.25), distance: distance * unit, triangles: None })
+        };
+        assert!(is_verified(within(0.51)) && !is_verified(within(0.49)), "{power}");
+        let parted = |most: f64| judged(Claim::Parted { time: 0.505, along: DVec3::Z, most: most * unit });
+        assert!(is_verified(parted(0.02)) && !is_verified(parted(0.005)), "{power}");
+        let rounded =
+            Query { bodies: query.bodies.map(|body| Body { radius: 0.125 * unit, ..body }), ..query };
+        let claim = |to: f64| Claim::Clear { span: between(0.0, to), distance: 0.0 };
+        assert!(is_verified(verify(&rounded, &claim(0.37), STEPS)), "{power}");
+        assert!(!is_verified(verify(&rounded, &claim(0.38), STEPS)), "{power}");
+    }
+}

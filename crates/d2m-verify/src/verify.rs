@@ -2,6 +2,7 @@
 use crate::instant::Instant;
 use crate::prove::{Obstacle, Proof, surfaces_clear};
 use crate::solid::{clear, overlap};
+use crate::units::Unit;
 use crate::{Body, Claim, Query, Reason, TimeSpan, Verdict};
 use d2m_interval::Interval;
 use d2m_motion::{Composed, ConstantTwist, RigidMotion};
@@ -40,6 +41,30 @@ pub fn verify(query: &Query<'_>, claim: &Claim, most_steps: u64) -> Verdict {
     if is_one_motion(query.bodies.map(|body| body.motion)) {
         bodies = bodies.map(|body| Body { motion: &ConstantTwist::REST, ..body });
     }
+    match Unit::of(query).and_then(|unit| verify_in(unit, query, &bodies, claim, most_steps)) {
+        Some(verdict) => verdict,
+        None => verify_here(query, bodies, claim, most_steps),
+    }
+}
+
+/// The same in another unit of length. `None`: a length is not known exactly in that.
+fn verify_in(
+    unit: Unit,
+    query: &Query<'_>,
+    bodies: &[Body<'_>; 2],
+    claim: &Claim,
+    most_steps: u64,
+) -> Option<Verdict> {
+    let meshes = unit.try_meshes(bodies)?;
+    let (motions, as_queried) = (unit.motions(bodies), unit.motions(&query.bodies));
+    let queried = unit.try_bodies(&query.bodies, &meshes, &as_queried)?;
+    let query = Query { bodies: queried, window: query.window };
+    let bodies = unit.try_bodies(bodies, &meshes, &motions)?;
+    let verdict = verify_here(&query, bodies, &unit.try_claim(claim)?, most_steps);
+    Some(unit.verdict(verdict))
+}
+
+fn verify_here(query: &Query<'_>, bodies: [Body<'_>; 2], claim: &Claim, most_steps: u64) -> Verdict {
     let mut case = Case { query, bodies, left: most_steps };
     match case.judge(claim) {
         Ok(()) => Verdict::Verified { steps: most_steps - case.left },

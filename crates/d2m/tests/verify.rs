@@ -268,6 +268,43 @@ fn answers_are_proven_in_any_unit_of_time() {
     }
 }
 
+/// What is held, what overlaps and leaves, and what touches, in units of length from 1e-240 to 1e58.
+#[test]
+fn answers_are_proven_in_any_unit_of_length() {
+    for power in [-800, -400, -180, 0, 190] {
+        let unit = 2f64.powi(power);
+        let [large, small] = [1.0, 0.25].map(|half| MeshTree::new(mesh(&Surface::cube(half * unit))));
+        let verifier = Verifier::try_new(large.mesh(), small.mesh()).unwrap();
+        for place in [0.5, 1.0, 1.25, 1.5, -2.0] {
+            let leaving = ConstantTwist::REST
+                .with_position(DVec3::new(place, 0.125, 0.0) * unit)
+                .with_linear_velocity(DVec3::new(1.0, 0.0625, -0.25) * unit);
+            let bodies = [Moving::new(&large, &ConstantTwist::REST), Moving::new(&small, &leaving)];
+            let (window, options, [a, b]) = (Window::UNIT, QueryOptions::default(), bodies);
+            let answer = time_of_contact(a, b, window, &options).unwrap();
+            let parted = departure(a, b, window, &options).unwrap();
+            let spans = contact_spans(a, b, window, &options, Some(0.01)).unwrap();
+            let wanted = ClearanceOptions::default();
+            let nearest = clearance(a, b, window, &wanted).unwrap();
+            let verdicts = [
+                verifier.time_of_contact(&bodies, window, &options, &answer, STEPS),
+                verifier.departure(&bodies, window, &options, &parted, STEPS),
+                verifier.contact_spans(&bodies, window, &options, Some(0.01), &spans, STEPS),
+                verifier.clearance(&bodies, window, &wanted, &nearest, STEPS),
+            ];
+            let are_verified = verdicts.iter().all(|verdict| matches!(verdict, Verdict::Verified { .. }));
+            assert!(are_verified, "{power} {place}: {verdicts:?} {answer:?} {parted:?}");
+            let verdict =
+                verifier.time_of_contact(&bodies, window, &options, &TimeOfContact::Separated, STEPS);
+            assert_eq!(
+                matches!(verdict, Verdict::Verified { .. }),
+                place == 1.5,
+                "{power} {place}: {verdict:?}"
+            );
+        }
+    }
+}
+
 /// Of a budget that ended the search of the start nothing is claimed, and so nothing is refuted, however the bodies stand.
 #[test]
 fn a_departure_whose_start_was_not_searched_claims_nothing() {

@@ -76,6 +76,11 @@ pub(super) fn judge(
                 ..of_pair(contact, bodies, triangles, contact.normal)
             }
         }
+        // The search has proven of the reported triangles what could not be decided of the bodies: in units so small that underflow takes a
+        // part of all lengths.
+        Meeting::Undecided if contact.evidence == Evidence::Crossing && contact.time_hi == time => {
+            Contact { start: StartState::Overlapping, separation: 0.0, ..contact }
+        }
         // The separation is still that of the reported triangles.
         Meeting::Undecided => Contact { start: StartState::Undecided, ..contact },
     })

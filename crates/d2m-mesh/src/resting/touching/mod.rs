@@ -231,11 +231,19 @@ impl<'a> Meeters<'a> {
         let wide = wide.reaching(LAST_STEP * scene.need);
         let mut near = Vec::new();
         let finished = self.within(meter, |some| near_pairs(&wide, MOST_PAIRS, some, &mut near))?.is_some();
-        if near.is_empty() {
-            // Surfaces that are apart: what one of the bodies holds it holds with any rounding.
-            let holding = |some: &mut Meter| one_holds_the_other(scene, self.solids, some);
-            let held = if finished { self.within(meter, holding)? } else { None };
-            return Ok(held.map_or(Some(Meeting::Undecided), |held| held.map(Meeting::Holding)));
+        // Surfaces that are apart, by however little: what one of the bodies holds it holds with any rounding.
+        let are_apart = if near.is_empty() {
+            finished
+        } else {
+            self.within(meter, |some| surfaces_are_apart(scene, some))? == Some(true)
+        };
+        let holding = |some: &mut Meter| one_holds_the_other(scene, self.solids, some);
+        let held = if are_apart { self.within(meter, holding)? } else { None };
+        match held {
+            Some(Some(held)) => return Ok(Some(Meeting::Holding(held))),
+            _ if !near.is_empty() => {}
+            Some(None) => return Ok(None),
+            None => return Ok(Some(Meeting::Undecided)),
         }
         // A body that is a point to rounding is stood for by its first triangle.
         let is_known = finished && near.len() < MOST_PAIRS && ![0, 1].iter().any(|&k| wide.is_point_like(k));
