@@ -27,7 +27,8 @@ impl Unit {
         });
         let place =
             |body: &Body<'_>, time: f64| body.motion.pose_and_twist(time).0.transform_point(body.mesh.center);
-        let apart = [query.window.from, query.window.to].map(|time| {
+        let is_known = |time: &f64| query.bodies.iter().all(|body| body.motion.domain().contains(*time));
+        let apart = [query.window.from, query.window.to].into_iter().filter(is_known).map(|time| {
             let [a, b] = query.bodies.each_ref().map(|body| place(body, time));
             (b - a).abs().max_element()
         });

@@ -2,7 +2,7 @@
 #![cfg(feature = "verify")]
 
 use d2m::bvh::{Evidence, StartState};
-use d2m::glam::DVec3;
+use d2m::glam::{DQuat, DVec3};
 use d2m::interval::{Interval, IntervalVec3};
 use d2m::motion::{IntervalPose, IntervalTwist};
 use d2m::paper::{self, SphereTree};
@@ -302,6 +302,29 @@ fn answers_are_proven_in_any_unit_of_length() {
                 "{power} {place}: {verdict:?}"
             );
         }
+    }
+}
+
+/// Of bodies a millionth of their size apart the closest points, which are rounded, say their direction to a billionth only: that is no fault of an answer.
+#[test]
+fn normals_of_close_bodies_are_as_exact_as_their_points() {
+    let [large, small] = [1.0, 0.25].map(|half| MeshTree::new(mesh(&Surface::cube(half))));
+    let verifier = Verifier::try_new(large.mesh(), small.mesh()).unwrap();
+    let mut random = KnuthRandom(7);
+    for round in 0..60 {
+        let turn = DQuat::from_scaled_axis(random.vector() * 2.0);
+        let gap = [1e-6, 3e-7, 1e-7][round % 3];
+        let place = turn * DVec3::new(1.25 + gap, 0.8 * random.signed(), 0.8 * random.signed());
+        let [at_a, at_b] =
+            [DVec3::ZERO, place].map(|place| ConstantTwist::REST.with_position(place).with_orientation(turn));
+        let bodies = [Moving::new(&large, &at_a), Moving::new(&small, &at_b)];
+        let wanted = ClearanceOptions::default().with_accuracy(1e-2);
+        let mut answer = clearance(bodies[0], bodies[1], Window::UNIT, &wanted).unwrap();
+        let verdict = verifier.clearance(&bodies, Window::UNIT, &wanted, &answer, STEPS);
+        assert!(matches!(verdict, Verdict::Verified { .. }), "{round}: {answer:?} {verdict:?}");
+        answer.normal = (answer.normal + 0.1 * answer.normal.any_orthonormal_vector()).normalize();
+        let verdict = verifier.clearance(&bodies, Window::UNIT, &wanted, &answer, STEPS);
+        assert!(matches!(verdict, Verdict::Unproven { reason: Reason::Witness, .. }), "{round}: {verdict:?}");
     }
 }
 

@@ -65,7 +65,7 @@ pub fn witness_fault(
     let between = (bodies[0].radius + bodies[1].radius) + contact.separation;
     // Of rounded bodies that overlap the depth is not stated.
     let distance = if contact.separation > 0.0 { between } else { 0.0 };
-    if !is_normal(contact.normal, &placed, distance, 4.0 * off) {
+    if !is_normal(contact.normal, &placed, distance, [4.0 * off; 2]) {
         return Some("normal");
     }
     let velocity = |k: usize| states[k].1.velocity_of(points[k] - states[k].0.translation);
@@ -92,16 +92,16 @@ fn are_features_of(bodies: &[Moving<'_>; 2], numbers: [u32; 2], feature: Feature
     }
 }
 
-/// Does a unit normal separate two placed triangles that are so far apart by no less than that, up to `error`? Those that all but touch have
-/// no direction of closest points.
-fn is_normal(normal: DVec3, [a, b]: &[[DVec3; 3]; 2], distance: f64, error: f64) -> bool {
+/// Does a unit normal separate two placed triangles that are so far apart by no less than that, up to `beside`? Those that are no further apart than
+/// `error` have no direction of closest points.
+fn is_normal(normal: DVec3, [a, b]: &[[DVec3; 3]; 2], distance: f64, [error, beside]: [f64; 2]) -> bool {
     if is_off((normal.length() - 1.0).abs(), UNITS) {
         return false;
     }
     let along = |p: &DVec3| normal.dot(*p - a[0]);
     let nearest = b.iter().map(along).fold(f64::INFINITY, f64::min);
     let furthest = a.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
-    !(distance > error && nearest - furthest < distance - error)
+    !(distance > error && nearest - furthest < distance - beside)
 }
 
 /// The triangles of a clearance at its time; none where there are none of these numbers.
@@ -155,7 +155,11 @@ pub(super) fn clearance_fault(
     }
     let distance = if answer.upper > above { between + radii } else { 0.0 };
     let is_known = answer.normal != DVec3::ZERO;
-    if is_known && !is_normal(answer.normal, &placed, distance, 4.0 * error) {
+    // Of points that are off by no more the direction is off by that part of their distance, and so is what it says of points beside them.
+    let [a, b] = &placed;
+    let reach = a.iter().flat_map(|p| b.iter().map(|q| length(*q - *p))).fold(distance, f64::max);
+    let beside = if distance > 0.0 { 4.0 * error * (reach / distance) } else { 4.0 * error };
+    if is_known && !is_normal(answer.normal, &placed, distance, [4.0 * error, beside]) {
         return Some("normal");
     }
     None
