@@ -8,7 +8,7 @@ use d2m::motion::{IntervalPose, IntervalTwist};
 use d2m::paper::{self, SphereTree};
 use d2m::verify::{Reason, Verdict, Verifier};
 use d2m::{
-    Budget, ClearanceOptions, ConstantTwist, Contact, MeshTree, Mode, Moving, Pose, QueryOptions,
+    Budget, ClearanceOptions, Composed, ConstantTwist, Contact, MeshTree, Mode, Moving, Pose, QueryOptions,
     RigidMotion, Solid, SpanStatus, TimeOfContact, TriMesh, Twist, Window, clearance, contact_spans,
     departure, time_of_contact,
 };
@@ -303,6 +303,23 @@ fn answers_are_proven_in_any_unit_of_length() {
             );
         }
     }
+}
+
+/// What is held a little further from a wall than the tolerance, and slides along it while both turn: its least distance is none from the start on.
+#[test]
+fn what_slides_along_a_wall_inside_is_proven_to_be_held() {
+    let [large, small] = [1.0, 0.125].map(|half| MeshTree::new(mesh(&Surface::cube(half))));
+    let verifier = Verifier::try_new(large.mesh(), small.mesh()).unwrap();
+    let spin = ConstantTwist::REST.with_angular_velocity(DVec3::new(0.5, 1.0, -2.0));
+    let outer = Composed::new(spin, ConstantTwist::REST);
+    let inner = ConstantTwist::REST.with_linear_velocity(DVec3::Y * 0.5);
+    let inner = Composed::new(spin, inner.with_position(DVec3::new(0.25, -0.25, 0.875 - 2.2e-10)));
+    let bodies = [Moving::new(&large, &outer), Moving::new(&small, &inner)];
+    let wanted = ClearanceOptions::default();
+    let answer = clearance(bodies[0], bodies[1], Window::UNIT, &wanted).unwrap();
+    assert_eq!((answer.lower, answer.upper, answer.time), (0.0, 0.0, 0.0), "{answer:?}");
+    let verdict = verifier.clearance(&bodies, Window::UNIT, &wanted, &answer, 1 << 16);
+    assert!(matches!(verdict, Verdict::Verified { .. }), "{answer:?} {verdict:?}");
 }
 
 /// Of bodies a millionth of their size apart the closest points, which are rounded, say their direction to a billionth only: that is no fault of an answer.
