@@ -82,6 +82,56 @@ impl TrianglesAt {
 
     /// Proof that the true triangles share a point; false proves nothing.
     pub fn certainly_cross(&self) -> bool {
-        proven_crossing(&self.corners[0], &self.corners[1], self.errors[0].max(self.errors[1]))
+        let [a, b] = self.errors;
+        // The greater of a number and of what is none is the number: nothing would be known of the other triangle.
+        (a + b).is_finite() && proven_crossing(&self.corners[0], &self.corners[1], a.max(b))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use d2m_interval::Interval;
+    use d2m_motion::{ConstantTwist, IntervalPose, IntervalTwist, Pose, RigidMotion};
+
+    /// At rest, and known at one time within so much of its place and of its rotation.
+    struct Known([f64; 2]);
+
+    impl RigidMotion for Known {
+        fn pose_and_twist(&self, t: f64) -> (Pose, Twist) {
+            ConstantTwist::REST.pose_and_twist(t)
+        }
+        fn enclose_pose(&self, t: Interval) -> IntervalPose {
+            ConstantTwist::REST.enclose_pose(t)
+        }
+        fn enclose_twist(&self, t: Interval) -> IntervalTwist {
+            ConstantTwist::REST.enclose_twist(t)
+        }
+        fn enclose_twist_rate(&self, t: Interval) -> IntervalTwist {
+            ConstantTwist::REST.enclose_twist_rate(t)
+        }
+        fn enclose_state_about(&self, t: f64, origin: DVec3) -> CertifiedState {
+            let [position_radius, rotation_radius] = self.0;
+            let state = ConstantTwist::REST.enclose_state_about(t, origin);
+            CertifiedState { position_radius, rotation_radius, ..state }
+        }
+    }
+
+    /// Triangles cross only where both are known, whichever of them is not.
+    #[test]
+    fn what_is_placed_anywhere_crosses_nothing() {
+        let flat = [DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, -1.0, 0.0), DVec3::new(0.0, 1.0, 0.0)];
+        let upright = flat.map(|p| DVec3::new(0.1, p.x, p.y));
+        let crossing = |radii: [[f64; 2]; 2]| {
+            let motions = radii.map(Known);
+            let triangle = |k: usize, corners| MovingTriangle { corners, motion: &motions[k] };
+            TrianglesAt::new(&[triangle(0, flat), triangle(1, upright)], 0.0).certainly_cross()
+        };
+        assert!(crossing([[0.0; 2]; 2]) && crossing([[1e-3; 2]; 2]));
+        for unknown in [f64::NAN, f64::INFINITY, 10.0] {
+            for radii in [[unknown, 0.0], [0.0, unknown]] {
+                assert!(!crossing([radii, [0.0; 2]]) && !crossing([[0.0; 2], radii]), "{radii:?}");
+            }
+        }
     }
 }

@@ -47,15 +47,14 @@ pub(super) fn judge(
     let Some(meeting) = meeting_at(bodies, solids, time, meter)? else {
         return nearest_of_rounded(contact, bodies, meter);
     };
+    let crossing =
+        |triangles: &[u32; 2]| TrianglesAt::new(&triangles_of(bodies, *triangles), time).certainly_cross();
     Ok(match meeting {
         Meeting::Touching(touch) => {
             let found = of_pair(contact, bodies, touch.triangles, touch.normal);
             Contact { start: StartState::Touching, ..found }
         }
         Meeting::Overlapping(triangles) => {
-            let crossing = |triangles: &[u32; 2]| {
-                TrianglesAt::new(&triangles_of(bodies, *triangles), time).certainly_cross()
-            };
             let found = match triangles.filter(crossing) {
                 Some(triangles) => Contact {
                     evidence: Evidence::Crossing,
@@ -76,10 +75,12 @@ pub(super) fn judge(
                 ..of_pair(contact, bodies, triangles, contact.normal)
             }
         }
-        // The search has proven of the reported triangles what could not be decided of the bodies: in units so small that underflow takes a
-        // part of all lengths.
-        Meeting::Undecided if contact.evidence == Evidence::Crossing && contact.time_hi == time => {
-            Contact { start: StartState::Overlapping, separation: 0.0, ..contact }
+        // What could not be decided of the bodies may be known of the reported triangles: in units so small that underflow takes a part of all lengths.
+        Meeting::Undecided
+            if contact.evidence == Evidence::Crossing
+                && crossing(&[contact.triangle_a, contact.triangle_b]) =>
+        {
+            Contact { start: StartState::Overlapping, separation: 0.0, time_hi: time, ..contact }
         }
         // The separation is still that of the reported triangles.
         Meeting::Undecided => Contact { start: StartState::Undecided, ..contact },
