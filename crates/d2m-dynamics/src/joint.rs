@@ -97,7 +97,7 @@ pub enum MotorTarget {
 pub struct Motor {
     /// What it aims at.
     pub target: MotorTarget,
-    /// The greatest force or torque. Default: any.
+    /// The greatest force or torque. Default: any, but for what is in the way: there it stalls.
     #[cfg_attr(feature = "serde", serde(with = "unbounded"))]
     pub most: f64,
     /// Force by what lacks to the position. Zero: as stiff as need be.

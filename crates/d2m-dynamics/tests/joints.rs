@@ -1,11 +1,14 @@
 //! Joints keep their bodies together, and their energy; limits, motors, springs and friction do what they say.
 
+mod ground;
+
 use d2m_bvh::MeshTree;
 use d2m_dynamics::{
     Body, BodyId, Joint, JointKind, Kind, Mass, Motor, MotorTarget, Simulation, SimulationError,
     SimulationOptions, Spring, StepError,
 };
 use glam::{BVec3, DQuat, DVec3};
+use ground::{floor, tree};
 use std::sync::Arc;
 
 /// A bar of ten kilograms and a length of one, along x about this point.
@@ -543,4 +546,42 @@ fn what_a_motor_holds_still_sleeps_until_it_lets_go() {
     simulation.remove_joint(hinge);
     run(&mut simulation, 2.2);
     assert!(simulation.position(held).y < -0.1);
+}
+
+/// A head that a motor lowers onto a box, and two that motors press on a box from both sides, without a bound on their force: what is in the way
+/// stops them, in a flight a step, without time that is given up, and stays where it is.
+#[test]
+fn motors_stop_at_what_is_in_their_way_however_strong_they_are() {
+    for target in [MotorTarget::Velocity(0.5), MotorTarget::Position(0.7)] {
+        for (ways, mass) in
+            [(vec![DVec3::Y], 1.0), (vec![DVec3::Y], 1e3), (vec![DVec3::X, DVec3::NEG_X], 1.0)]
+        {
+            let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+            simulation.add(&floor()).unwrap();
+            let body = Body::new("box", tree("box?x=0.2&y=0.2&z=0.2")).with_friction(0.5);
+            let pressed = simulation.add(&body.clone().with_position(DVec3::Y * 0.201)).unwrap();
+            let mut heads = Vec::new();
+            for &way in &ways {
+                let place = DVec3::Y * 0.25 + way * 0.8;
+                let head = body.clone().with_position(place).with_mass(Mass::Total(64.0 * mass));
+                let id = simulation.add(&head).unwrap();
+                let slide = Joint::new(JointKind::Prismatic, id, None, place).with_axis(way);
+                simulation.add_joint(&slide.with_motor(Motor::new(target))).unwrap();
+                heads.push((id, way));
+            }
+            let mut flights = 0;
+            while simulation.time() < 1.5 {
+                let report = simulation.step().unwrap();
+                assert!(report.segments.iter().all(|segment| segment.skipped == 0.0));
+                flights += report.segments.len();
+            }
+            assert!(flights < 200, "{target:?} {ways:?} {mass}: {flights}");
+            let stayed = simulation.position(pressed);
+            assert!((stayed - DVec3::Y * 0.201).length() < 3e-3, "{target:?} {ways:?} {mass}: {stayed}");
+            for (head, way) in heads {
+                let apart = (simulation.position(head) - stayed).dot(way);
+                assert!((apart - 0.401).abs() < 2e-3, "{target:?} {ways:?} {mass}: {apart}");
+            }
+        }
+    }
 }

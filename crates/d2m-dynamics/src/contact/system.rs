@@ -118,6 +118,14 @@ impl System {
         }
     }
 
+    /// The impulse of a row, of whatever sign, is no larger than this.
+    pub(crate) fn bound(&mut self, row: usize, most: f64) {
+        if let Law::Range { lo, hi, .. } = &mut self.blocks[row].law {
+            (*lo, *hi) = (lo.max(-most), hi.min(most));
+        }
+        self.wide = None;
+    }
+
     /// Writes the impulses to the contacts.
     pub(crate) fn store(&self, contacts: &mut [ContactPoint]) {
         for (contact, [along, first, second]) in contacts.iter_mut().zip(&self.impulses) {

@@ -1,8 +1,8 @@
 //! Mechanisms that motors drive: linkages, arms with loads, cranes with loads on ropes of light rods.
 use super::super::scene::{Error, Scene};
-use super::law::{Law, never_more};
+use super::law::{Law, goes, never_more};
 use super::solids::cuboid;
-use super::trial::{Case, Trial, free, under};
+use super::trial::{Case, GAP, Trial, floor, free, still, under};
 use d2m::motion::Pose;
 use d2m_dynamics::{Body, BodyId, Joint, JointKind, Mass, Motor, MotorTarget};
 use glam::{DQuat, DVec3};
@@ -31,6 +31,20 @@ pub(super) fn cases(cases: &mut Vec<Case>) {
             let variant = format!("at {rate} rad/s with {load:.0e} times a rod on ten of them");
             cases.push(Case::new("crane", variant, 0.5, move |scene| crane(scene, rate, load)));
         }
+    }
+    for mass in [1e-2, 1.0, 1e4] {
+        for strength in [f64::INFINITY, MOST] {
+            let variant = format!("of {strength:.0e} N on a box of {mass:.0e} times its mass");
+            let build = move |scene| pressed(scene, mass, strength);
+            cases.push(Case::new("motor press", variant, 2.0, build));
+            let variant =
+                format!("of {strength:.0e} N that drives boxes of {mass:.0e} times its mass at a wall");
+            cases.push(Case::new("ram", variant, 2.0, move |scene| ram(scene, mass, strength)));
+        }
+    }
+    for strength in [f64::INFINITY, MOST] {
+        let variant = format!("whose fingers close on a box with {strength:.0e} Nm");
+        cases.push(Case::new("gripper", variant, 2.0, move |scene| gripper(scene, strength)));
     }
 }
 
@@ -134,4 +148,61 @@ fn crane(mut scene: Scene, rate: f64, load: f64) -> Result<Trial, Error> {
     };
     let longest = pitch * count as f64 + 3f64.sqrt() * size;
     under(scene, vec![follows(0, rate, 1e-4), never_more("the length of the rope", longest, far)])
+}
+
+/// Along an axis in the world, at half a unit a second.
+fn slide(body: BodyId, axis: DVec3, point: DVec3, strength: f64) -> Joint {
+    let mut motor = Motor::new(MotorTarget::Velocity(-0.5));
+    motor.most = strength;
+    Joint::new(JointKind::Prismatic, body, None, point).with_axis(axis).with_motor(motor)
+}
+
+/// A head that a motor lowers onto a box stops a gap above it.
+fn pressed(mut scene: Scene, mass: f64, strength: f64) -> Result<Trial, Error> {
+    scene.add(floor(0.0, 0.5)?)?;
+    let body = free("box", &cuboid(DVec3::splat(0.3))?, 0.5).with_mass(Mass::Total(100.0 * mass));
+    let body = scene.add(body.with_position(DVec3::new(0.1, 0.3 + GAP, 0.0)))?;
+    let head = free("head", &cuboid(DVec3::new(0.4, 0.1, 0.4))?, 0.5).with_mass(Mass::Total(100.0));
+    let head = scene.add(head.with_position(DVec3::Y))?;
+    scene.join(slide(head, DVec3::NEG_Y, DVec3::Y, strength))?;
+    let way = DVec3::NEG_Y * (0.3 - 2.0 * GAP);
+    under(scene, vec![goes(head, way, GAP), goes(body, DVec3::ZERO, GAP)])
+}
+
+/// A ram that a motor drives packs two boxes between itself and a wall.
+fn ram(mut scene: Scene, mass: f64, strength: f64) -> Result<Trial, Error> {
+    scene.add(floor(0.0, 0.5)?)?;
+    let wall = still("wall", &cuboid(DVec3::new(0.1, 1.0, 1.0))?, 0.5);
+    scene.add(wall.with_position(DVec3::new(0.6, 1.0, 0.0)))?;
+    let shape = cuboid(DVec3::splat(0.2))?;
+    let mut part = |name: &str, mass: f64, x: f64| {
+        let body = free(name, &shape, 0.5).with_mass(Mass::Total(mass));
+        scene.add(body.with_position(DVec3::new(x, 0.2 + GAP, 0.0)))
+    };
+    let ram = part("ram", 64.0, -1.0)?;
+    part("first", 64.0 * mass, -0.4)?;
+    part("second", 64.0 * mass, 0.1)?;
+    scene.join(slide(ram, DVec3::X, DVec3::NEG_X, strength))?;
+    under(scene, vec![goes(ram, DVec3::X * (0.5 - 3.0 * GAP), 2.0 * GAP)])
+}
+
+/// Two fingers on hinges close on a box that stands on a post: it stays there.
+fn gripper(mut scene: Scene, strength: f64) -> Result<Trial, Error> {
+    let post = still("post", &cuboid(DVec3::new(0.1, 0.5, 0.1))?, 0.5);
+    scene.add(post.with_position(DVec3::Y * 0.5))?;
+    let body = free("box", &cuboid(DVec3::splat(0.15))?, 0.5);
+    let body = scene.add(body.with_position(DVec3::Y * (1.15 + GAP)))?;
+    let finger = cuboid(DVec3::new(0.04, 0.4, 0.1))?;
+    let mut joints = Vec::new();
+    for (name, side) in [("left", -1.0), ("right", 1.0)] {
+        let finger = free(name, &finger, 0.5).with_position(DVec3::new(0.3 * side, 1.5, 0.0));
+        let finger = scene.add(finger)?;
+        let mut motor = Motor::new(MotorTarget::Velocity(0.7 * side));
+        motor.most = strength;
+        let point = DVec3::new(0.3 * side, 1.92, 0.0);
+        joints.push(hinge(finger, None, point).with_motor(motor));
+    }
+    // The world takes a place among the bodies: behind them.
+    joints.into_iter().try_for_each(|joint| scene.join(joint))?;
+    under(scene, vec![goes(body, DVec3::ZERO, 0.02)])
 }
