@@ -11,9 +11,8 @@ impl Simulation {
     /// Advances by one step: to the next multiple of [`SimulationOptions::step`](crate::SimulationOptions::step).
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// use d2m_dynamics::{Body, Simulation, SimulationOptions};
     /// use glam::DVec3;
     /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
@@ -35,11 +34,10 @@ impl Simulation {
     /// As [`Self::step`].
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use d2m_dynamics::{Body, ContactImpulse, Kind, Simulation, SimulationOptions};
     /// # use glam::DVec3;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// # let mut simulation = Simulation::new(SimulationOptions::default())?;
     /// # let floor = Body::new("floor", Arc::clone(&cube)).with_kind(Kind::Static);
     /// # let floor = simulation.add(&floor)?;
@@ -71,9 +69,8 @@ impl Simulation {
     /// Advances to a time, as one step of whatever length.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// use d2m_dynamics::{Body, Simulation, SimulationOptions};
     /// use glam::DVec3;
     /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
@@ -112,9 +109,8 @@ impl Simulation {
     /// The segments that are not reported yet, at the end of a run.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// use d2m_dynamics::{Body, Simulation, SimulationOptions};
     /// use glam::DVec3;
     /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;

@@ -9,9 +9,8 @@ use std::sync::Arc;
 /// Names a body of one [`Simulation`](crate::Simulation). The name of a body that was removed never means another one.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
 /// use d2m_dynamics::{Body, Simulation, SimulationOptions};
 /// use glam::DVec3;
 /// let mut simulation = Simulation::new(SimulationOptions::default())?;
@@ -39,8 +38,7 @@ impl BodyId {
 /// A motion that a kinematic body follows, whatever meets it.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
 /// use d2m_dynamics::{Body, Kind, Motion, Simulation, SimulationOptions};
 /// use d2m_motion::ConstantTwist;
 /// use glam::DVec3;
@@ -57,9 +55,8 @@ pub type Motion = Arc<dyn RigidMotion + Send + Sync>;
 /// What moves a body.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
 /// use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions};
 /// use d2m_motion::ConstantTwist;
 /// use glam::DVec3;
@@ -97,9 +94,8 @@ impl core::fmt::Debug for Kind {
 /// Where the mass of a dynamic body comes from.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
 /// use d2m_dynamics::{Body, Mass, Simulation, SimulationOptions};
 /// let mut simulation = Simulation::new(SimulationOptions::default())?;
 /// let stone = simulation.add(&Body::new("stone", cube).with_mass(Mass::Total(12.0)))?; // kilograms, say
@@ -209,9 +205,8 @@ pub enum Presence {
 /// meets. Bodies that do not meet pass through each other.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
 /// use d2m_dynamics::{Body, Groups, Kind, Simulation, SimulationOptions};
 /// use glam::DVec3;
 /// const GHOSTS: u32 = 1 << 1;
@@ -254,9 +249,8 @@ impl Default for Groups {
 /// How fast the velocities of a dynamic body fade besides what contacts do: each by the factor exp(−rate · step) at the start of a step.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
 /// use d2m_dynamics::{Body, Damping, Simulation, SimulationOptions};
 /// use glam::DVec3;
 /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;

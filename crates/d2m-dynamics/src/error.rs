@@ -9,9 +9,8 @@ use glam::DVec3;
 /// What is wrong with a body or a setting of a [`Simulation`](crate::Simulation).
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
 /// use d2m_dynamics::{Body, Simulation, SimulationError, SimulationOptions, StepError};
 /// use glam::DVec3;
 /// let mut simulation = Simulation::new(SimulationOptions::default())?;
@@ -160,9 +159,8 @@ pub enum SimulationError {
 /// Why a simulation cannot go on. The segments before it stand.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
 /// use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions, StepError};
 /// use d2m_motion::ConstantTwist;
 /// use glam::DVec3;

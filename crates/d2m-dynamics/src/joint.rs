@@ -6,9 +6,8 @@ use glam::{BVec3, DVec3};
 /// What a joint leaves free.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.1&y=0.1&z=0.1")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.1&y=0.1&z=0.1")?));
 /// use d2m_dynamics::{Body, Joint, JointKind, Simulation, SimulationOptions};
 /// use glam::DVec3;
 /// let mut simulation = Simulation::new(SimulationOptions::default())?;
@@ -47,9 +46,8 @@ pub enum JointKind {
 /// What a motor aims at.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.1&y=0.1&z=0.1")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.1&y=0.1&z=0.1")?));
 /// use d2m_dynamics::{Body, Joint, JointKind, Motor, MotorTarget, Simulation, SimulationOptions};
 /// use glam::DVec3;
 /// let mut simulation = Simulation::new(SimulationOptions::default())?;
@@ -73,9 +71,8 @@ pub enum MotorTarget {
 /// Drives the value of a revolute joint (an angle, by a torque) or of a prismatic one (a length, by a force).
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.1&y=0.1&z=0.1")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.1&y=0.1&z=0.1")?));
 /// use d2m_dynamics::{Body, Joint, JointKind, Motor, MotorTarget, Simulation, SimulationOptions};
 /// use glam::DVec3;
 /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
@@ -117,9 +114,8 @@ impl Motor {
 /// A spring at a joint's value: stiffness (rest − value) − damping rate, solved for the end of a step: stable for any stiffness.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.1&y=0.1&z=0.1")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.1&y=0.1&z=0.1")?));
 /// use d2m_dynamics::{Body, Joint, JointKind, Simulation, SimulationOptions, Spring};
 /// use glam::DVec3;
 /// let mut simulation = Simulation::new(SimulationOptions::default())?;
@@ -161,9 +157,8 @@ impl Spring {
 /// ones. What is certified is what flies, joints or not.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let bar = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.05&z=0.05")?));
+/// # let bar = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.05&z=0.05")?));
 /// use d2m_dynamics::{Body, Joint, JointKind, Simulation, SimulationOptions};
 /// use glam::DVec3;
 /// let mut simulation = Simulation::new(SimulationOptions::default())?;
@@ -215,11 +210,10 @@ impl Joint {
     /// they are added.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use d2m_dynamics::{Body, Joint, Simulation, SimulationOptions};
     /// # use glam::{BVec3, DVec3};
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// let mut simulation = Simulation::new(SimulationOptions::default())?;
     /// let thrown = Body::new("thrown", cube).with_linear_velocity(DVec3::new(1.0, 2.0, 3.0));
     /// let thrown = simulation.add(&thrown)?;

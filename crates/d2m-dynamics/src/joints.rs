@@ -50,11 +50,10 @@ impl Simulation {
     /// If there is no such joint, or it was taken out.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use d2m_dynamics::{Body, Joint, JointKind, Simulation, SimulationOptions};
     /// # use glam::DVec3;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// let mut simulation = Simulation::new(SimulationOptions::default())?;
     /// let hung = simulation.add(&Body::new("hung", cube))?;
     /// let nail = simulation.add_joint(&Joint::new(JointKind::Spherical, hung, None, DVec3::Y))?;

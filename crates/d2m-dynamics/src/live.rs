@@ -22,12 +22,11 @@ impl Simulation {
     /// If the body was removed.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use d2m_dynamics::{Body, Kind, Simulation, SimulationError, SimulationOptions};
     /// # use d2m_motion::Pose;
     /// # use glam::{DQuat, DVec3};
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// let mut simulation = Simulation::new(SimulationOptions::default())?;
     /// simulation.add(&Body::new("floor", Arc::clone(&cube)).with_kind(Kind::Static).with_position(DVec3::Y * -0.5))?;
     /// let cube = simulation.add(&Body::new("cube", cube).with_position(DVec3::Y * 0.6))?;
@@ -64,11 +63,10 @@ impl Simulation {
     /// If the body was removed.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use d2m_dynamics::{Body, Simulation, SimulationOptions};
     /// # use glam::DVec3;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
     /// let cube = simulation.add(&Body::new("cube", cube))?;
     /// simulation.step()?;
@@ -137,10 +135,9 @@ impl Simulation {
     /// If the body was removed.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use d2m_dynamics::{Body, Simulation, SimulationOptions};
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// let mut simulation = Simulation::new(SimulationOptions::default())?;
     /// let [a, b] = [0, 1].map(|_| simulation.add(&Body::new("cube", Arc::clone(&cube))));
     /// let (a, b) = (a?, b?);
@@ -245,11 +242,10 @@ impl Simulation {
     /// If the body was removed.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions};
     /// # use glam::DVec3;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// let mut simulation = Simulation::new(SimulationOptions::default())?;
     /// let held = simulation.add(&Body::new("held", cube).with_kind(Kind::Static))?;
     /// simulation.step()?;
@@ -288,12 +284,11 @@ impl Simulation {
     /// If the body was removed.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions};
     /// # use d2m_motion::Pose;
     /// # use glam::{DQuat, DVec3};
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// let mut simulation = Simulation::new(SimulationOptions::default())?;
     /// let hand = simulation.add(&Body::new("hand", cube).with_kind(Kind::Driven))?;
     /// simulation.set_target(hand, Pose::new(DVec3::X * 0.02, DQuat::from_rotation_z(0.1)))?;
@@ -335,12 +330,11 @@ impl Simulation {
     /// If one of them was removed.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use d2m_dynamics::{Body, Simulation, SimulationError, SimulationOptions};
     /// # use d2m_motion::Pose;
     /// # use glam::{DQuat, DVec3};
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// let mut simulation = Simulation::new(SimulationOptions::default())?;
     /// let [a, b] = [0, 1].map(|_| simulation.add(&Body::new("cube", Arc::clone(&cube))));
     /// let (a, b) = (a?, b?);

@@ -33,9 +33,8 @@ impl Simulation {
     /// to rounding are accepted, and parted by the next step. Nothing changes then.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// use d2m_dynamics::{Body, Simulation, SimulationError, SimulationOptions};
     /// use glam::DVec3;
     /// let mut simulation = Simulation::new(SimulationOptions::default())?;
@@ -68,9 +67,8 @@ impl Simulation {
     /// means another body.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions};
     /// use glam::DVec3;
     /// let mut simulation = Simulation::new(SimulationOptions::default())?;
@@ -104,9 +102,8 @@ impl Simulation {
     /// The place that the next body to be added is given, its [`BodyId::index`]: the first one that is free.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// use d2m_dynamics::{Body, Joint, JointKind, Simulation, SimulationOptions};
     /// use glam::DVec3;
     /// let mut simulation = Simulation::new(SimulationOptions::default())?;

@@ -7,9 +7,8 @@ impl Simulation {
     /// A force through the center of mass and a torque, world axes, over the next step; gravity comes on top. Wakes the body.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// use d2m_dynamics::{Body, Simulation, SimulationOptions};
     /// use glam::DVec3;
     /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
@@ -41,11 +40,10 @@ impl Simulation {
     /// As [`Self::set_force`].
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use d2m_dynamics::{Body, Mass, Simulation, SimulationOptions};
     /// # use glam::DVec3;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
     /// let cube = simulation.add(&Body::new("cube", cube).with_mass(Mass::Total(1.0)))?;
     /// // Two thrusters on opposite sides: of the torques nothing is left.
@@ -66,9 +64,8 @@ impl Simulation {
     /// Adds an impulse at the center of mass and an angular impulse, world axes. Wakes the body.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// use d2m_dynamics::{Body, Simulation, SimulationOptions};
     /// use glam::DVec3;
     /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
@@ -105,11 +102,10 @@ impl Simulation {
     /// As [`Self::apply_impulse`].
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use d2m_dynamics::{Body, Mass, Simulation, SimulationOptions};
     /// # use glam::DVec3;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;
     /// let cube = Body::new("cube", cube).with_mass(Mass::Total(1.0));
     /// let cube = simulation.add(&cube.with_position(DVec3::X * 3.0))?;
@@ -133,11 +129,10 @@ impl Simulation {
     /// The body is simulated again if it sleeps. It falls asleep again where it stays at rest.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions};
     /// # use glam::DVec3;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// # let mut simulation = Simulation::new(SimulationOptions::default())?;
     /// # let floor = Body::new("floor", Arc::clone(&cube)).with_kind(Kind::Static);
     /// # simulation.add(&floor.with_position(DVec3::Y * -1.001))?;

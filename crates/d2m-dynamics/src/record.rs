@@ -7,9 +7,8 @@ use glam::DVec3;
 /// An impulse at a contact.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
 /// use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions};
 /// use glam::DVec3;
 /// let mut simulation = Simulation::new(SimulationOptions::default())?;
@@ -46,9 +45,8 @@ pub struct ContactImpulse {
 /// A span of time in which every body moves with a constant twist about its center of mass.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
 /// use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions};
 /// use glam::DVec3;
 /// let mut simulation = Simulation::new(SimulationOptions::default())?;
@@ -84,9 +82,8 @@ pub struct Segment {
 /// What has become of two bodies that touch.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
 /// use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions, TouchChange};
 /// use glam::DVec3;
 /// let mut simulation = Simulation::new(SimulationOptions::default())?;
@@ -113,9 +110,8 @@ pub enum TouchChange {
 /// Two bodies begin to touch, or do so no more. What rests and sleeps goes on touching.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
 /// use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions, TouchChange};
 /// use glam::DVec3;
 /// let mut simulation = Simulation::new(SimulationOptions::default())?;

@@ -20,9 +20,8 @@ use std::sync::Arc;
 /// What happened in a step.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
 /// use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions};
 /// use glam::DVec3;
 /// let mut simulation = Simulation::new(SimulationOptions::default())?;
@@ -170,11 +169,10 @@ impl Simulation {
     /// All bodies, in the order of their places: that in which they were added, as long as none was removed.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use d2m_dynamics::{Body, Simulation, SimulationOptions};
     /// # use glam::DVec3;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// let mut simulation = Simulation::new(SimulationOptions::default())?;
     /// let one = simulation.add(&Body::new("one", Arc::clone(&cube)))?;
     /// let two = simulation.add(&Body::new("two", cube).with_position(DVec3::X * 3.0))?;

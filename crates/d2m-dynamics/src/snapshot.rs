@@ -156,9 +156,8 @@ impl Simulation {
     /// A state of other bodies than the snapshot was taken of, or one that was written and read, is checked for intersections.
     ///
     /// ```
-    /// # use d2m_bvh::MeshTree;
     /// # use std::sync::Arc;
-    /// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
     /// use d2m_dynamics::{Body, Simulation, SimulationOptions};
     /// use glam::DVec3;
     /// let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO))?;

@@ -180,3 +180,52 @@ fn what_two_of_a_crowd_do_leaves_the_others_in_flight() {
     let changed: Vec<usize> = within.map(|segment| segment.changed.len()).collect();
     assert!(met > 0 && changed.contains(&2) && changed.iter().all(|&count| count <= 2), "{met} {changed:?}");
 }
+
+/// What bounces to and fro in the same body, many times a step, has all of the gap for each of its bounces, as if it met something else each time.
+#[test]
+fn what_rattles_in_a_body_keeps_its_energy_and_its_room() {
+    let mut simulation =
+        Simulation::new(SimulationOptions::default().with_gap(1e-4).with_gravity(DVec3::ZERO)).unwrap();
+    let hollow = Body::new("hollow", tree("hollow-box?wall=0.1&scale=1.7320508")).with_restitution(1.0);
+    simulation.add(&hollow.with_kind(Kind::Static)).unwrap();
+    let cube = Body::new("cube", tree("box?x=0.895&y=0.895&z=0.895")).with_restitution(1.0);
+    let cube = simulation.add(&cube.with_linear_velocity(DVec3::new(40.0, 0.0, 0.0))).unwrap();
+    let mut bounces = 0;
+    while simulation.time() < 0.05 {
+        let report = simulation.step().unwrap();
+        assert!(report.segments.iter().all(|segment| segment.skipped == 0.0));
+        bounces += report.events;
+    }
+    assert!(bounces > 190, "{bounces}");
+    assert!((simulation.linear_velocity(cube).length() / 40.0 - 1.0).abs() < 1e-9);
+}
+
+/// A heavy cube falls onto a light one that lies on the floor: it comes up again as from the floor, at every ratio of masses.
+#[test]
+fn what_falls_on_something_light_bounces_as_on_what_that_lies_on() {
+    for ratio in [1e3, 1e6, 1e8] {
+        for restitution in [0.8, 1.0] {
+            let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+            let shape = tree("box?x=0.5&y=0.5&z=0.5");
+            let floor = Body::new("floor", tree("box?x=20&y=0.5&z=20")).with_kind(Kind::Static);
+            simulation.add(&floor.with_position(DVec3::Y * -0.5)).unwrap();
+            let cube = |y: f64, mass: f64| {
+                let body = Body::new("cube", Arc::clone(&shape)).with_mass(Mass::Total(mass));
+                body.with_position(DVec3::Y * y).with_restitution(restitution)
+            };
+            let light = simulation.add(&cube(0.501, 1.0)).unwrap();
+            let heavy = simulation.add(&cube(2.502, ratio)).unwrap();
+            let mut highest = 0.0f64;
+            let falls = (2.0f64 / 9.81).sqrt();
+            while simulation.time() < falls * (1.0 + restitution) + 0.02 {
+                let _ = simulation.step().unwrap();
+                if simulation.time() > falls + 0.1 {
+                    highest = highest.max(simulation.position(heavy).y);
+                }
+            }
+            let expected = 1.502 + restitution * restitution;
+            assert!((highest - expected).abs() < 5e-3, "{ratio:e} {restitution}: {highest}, not {expected}");
+            assert!(simulation.position(light).y < 1.0 + highest);
+        }
+    }
+}

@@ -34,7 +34,8 @@ pub(crate) fn impact(
     resting_speed: f64,
 ) -> Vec<ContactPoint> {
     let cleared = |c: &ContactPoint| ContactPoint { impulse: 0.0, sliding: [0.0; 2], ..*c };
-    let mut totals: Vec<ContactPoint> = contacts.iter().map(cleared).collect();
+    let none = || contacts.iter().map(cleared).collect::<Vec<ContactPoint>>();
+    let mut totals = none();
     let still = Velocity::default();
     let driven = system.bodies.iter().any(|body| body.inverse_mass == 0.0 && body.velocity != still)
         || contacts.iter().any(|contact| contact.running != [0.0; 2]);
@@ -44,7 +45,7 @@ pub(crate) fn impact(
         if !at_once && hits.contains(&MOST_HITS) {
             at_once = true;
             system.begin(&first);
-            totals.iter_mut().for_each(|total| (total.impulse, total.sliding) = (0.0, [0.0; 2]));
+            totals = none();
         }
         let rates: Vec<f64> = (0..contacts.len()).map(|k| system.rate(k)).collect();
         let closes = |k: usize| rates[k] < -resting_speed && contacts[k].material.restitution > 0.0;

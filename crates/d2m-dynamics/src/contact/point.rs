@@ -13,9 +13,8 @@ const SHARED: f64 = 0.625;
 /// How two bodies touch.
 ///
 /// ```
-/// # use d2m_bvh::MeshTree;
 /// # use std::sync::Arc;
-/// # let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+/// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
 /// use d2m_dynamics::{Body, Simulation, SimulationOptions};
 /// use glam::DVec3;
 /// let mut simulation = Simulation::new(SimulationOptions::default())?;

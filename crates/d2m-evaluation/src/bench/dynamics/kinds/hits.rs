@@ -4,7 +4,7 @@ use super::law::{keeps_energy, keeps_momentum, leaves_at, never_more};
 use super::solids::cuboid;
 use super::trial::{Case, GAP, GRAVITY, Trial, floor, free, under};
 use d2m::motion::Pose;
-use d2m_dynamics::{BodyId, Mass, SimulationOptions};
+use d2m_dynamics::{BodyId, Kind, Mass, SimulationOptions};
 use d2m_testing::Xoshiro256;
 use glam::DVec3;
 
@@ -32,6 +32,18 @@ pub(super) fn cases(cases: &mut Vec<Case>, seed: u64) {
     for restitution in [0.3, 0.8, 1.0] {
         let variant = format!("with restitution {restitution}");
         cases.push(Case::new("bounce", variant, 2.0, move |scene| bounce(scene, restitution)));
+    }
+    for ratio in [1e3, 1e5, 1e8] {
+        for restitution in [0.5, 0.9, 1.0] {
+            let variant = format!("on a light cube, {ratio:e} times, with restitution {restitution}");
+            cases.push(Case::new("bounce", variant, 1.0, move |scene| bounce_on(scene, ratio, restitution)));
+        }
+    }
+    for restitution in [0.5, 1.0] {
+        let variant = format!("in a box, with restitution {restitution}");
+        let fine = SimulationOptions::default().with_gap(1e-4);
+        let case = Case::new("rattle", variant, 0.5, move |scene| rattle(scene, restitution));
+        cases.push(case.with_options(fine).weightless());
     }
     for rate in [1.0, 30.0, 100.0, 300.0] {
         for (shape, x) in [("a brick", 0.5), ("a plate", 0.05)] {
@@ -112,17 +124,50 @@ fn bounce(mut scene: Scene, restitution: f64) -> Result<Trial, Error> {
     let body = free("cube", &cuboid(DVec3::splat(half))?, 0.0).with_restitution(restitution);
     let k = scene.add(body.with_position(DVec3::Y * (half + drop)))?.index();
     let height = move |poses: &[Pose]| poses[k].translation.y;
+    let laws =
+        vec![comes_up(k, half, drop, restitution), never_more("its height", half + drop + 1e-9, height)];
+    under(scene, laws)
+}
+
+/// At the top of its first way up, after it has fallen by this much onto something that lies at `floor`.
+fn comes_up(k: usize, floor: f64, drop: f64, restitution: f64) -> super::law::Law {
+    let height = move |poses: &[Pose]| poses[k].translation.y;
     let first = (2.0 * drop / GRAVITY).sqrt();
-    // At the top of its first way up.
-    let (top, time) = (half + drop * restitution * restitution, first * (1.0 + restitution));
+    let (top, time) = (floor + drop * restitution * restitution, first * (1.0 + restitution));
     let within = 2.0 * GAP + 2e-3;
-    let reaches = super::law::Law::new(format!("it comes up to {top:.4}"), move |ran| {
+    super::law::Law::new(format!("it comes up to {top:.4}"), move |ran| {
         let near = |time: f64, other: f64| (time - other).abs() < 0.05;
         let highest = ran.track.iter().filter(|(t, _)| near(*t, time)).map(|(_, poses)| height(poses));
         let highest = highest.fold(f64::NEG_INFINITY, f64::max);
         ((highest - top).abs() > within).then(|| format!("it came up to {highest}, not {top}"))
-    });
-    under(scene, vec![reaches, never_more("its height", half + drop + 1e-9, height)])
+    })
+}
+
+/// A heavy cube that falls flat from a meter onto a light one, which lies on the floor: it comes up as from the floor itself.
+fn bounce_on(mut scene: Scene, ratio: f64, restitution: f64) -> Result<Trial, Error> {
+    scene.add(floor(0.0, 0.0)?.with_restitution(restitution))?;
+    let (half, drop) = (0.2, 1.0);
+    let mut cube = |name: &str, y: f64, mass: f64| {
+        let body = free(name, &cuboid(DVec3::splat(half))?, 0.0).with_restitution(restitution);
+        scene.add(body.with_position(DVec3::Y * y).with_mass(Mass::Total(mass)))
+    };
+    cube("light", half + GAP, 1.0)?;
+    let k = cube("heavy", 3.0 * half + drop, ratio)?.index();
+    let height = move |poses: &[Pose]| poses[k].translation.y;
+    let laws =
+        vec![comes_up(k, 3.0 * half, drop, restitution), never_more("its height", 3.0 * half + drop, height)];
+    under(scene, laws)
+}
+
+/// A cube in a box, in which it meets one wall and the other many times a step.
+fn rattle(mut scene: Scene, restitution: f64) -> Result<Trial, Error> {
+    // Half a side of 1, of which the wall is a tenth.
+    let hollow = free("hollow", &tree("hollow-box?wall=0.1&scale=1.7320508")?, 0.0).with_kind(Kind::Static);
+    scene.add(hollow.with_restitution(restitution))?;
+    let body = free("cube", &cuboid(DVec3::splat(0.895))?, 0.0).with_restitution(restitution);
+    let id = scene.add(body.with_linear_velocity(DVec3::X * 20.0))?;
+    let stays = leaves_at(id, DVec3::ZERO, if restitution < 1.0 { 1.0 } else { 20.0 + 1e-9 });
+    under(scene, if restitution < 1.0 { vec![stays] } else { vec![stays, keeps_energy(1e-9)] })
 }
 
 /// A free top: energy to a thousandth, as long as it spins.
