@@ -288,7 +288,7 @@ impl Kinematics {
     /// let factor = f64::from_bits(1600 << 52); // 2⁵⁷⁷
     /// let found = tiny.in_unit_of_length(factor);
     /// assert_eq!(found.position.center, DVec3::X * 3e-200 * factor);
-    /// assert_eq!(tiny.in_unit_of_length(3.0).position, Ball::ANY);
+    /// assert_eq!(tiny.in_unit_of_length(3.0).position.radius, f64::INFINITY); // nothing is known
     /// ```
     #[must_use]
     pub fn in_unit_of_length(&self, factor: f64) -> Self {
