@@ -1,11 +1,14 @@
 //! Bodies that follow their motions: within a hundredth of the gap, however fast, or the step says that it cannot be.
 
+mod ground;
+
 use d2m_bvh::{MeshTree, TriMesh};
 use d2m_dynamics::{Body, Kind, Segment, Simulation, SimulationError, SimulationOptions, StepError};
 use d2m_motion::{
     Chain, ConstantTwist, Joint, JointKind, JointValue, Keyframes, OutsideDomain, Pose, RigidMotion, Span,
 };
 use glam::{DQuat, DVec3};
+use ground::tree;
 use std::sync::Arc;
 
 const GAP: f64 = 1e-3;
@@ -222,4 +225,28 @@ fn what_a_drum_carries_along_has_room_for_its_turning() {
     }
     assert_eq!(skipped, 0.0);
     assert!(events < 300, "{events}");
+}
+
+/// A gear bounces on its pin and between the teeth of one that drives it, at 200 rad/s, many times in a step: for each bounce it has all of the gap.
+#[test]
+fn gears_that_bounce_on_their_pin_have_room() {
+    let options = SimulationOptions::default().with_gap(1e-5).with_step(0.005);
+    let mut simulation = Simulation::new(options).unwrap();
+    let gear = tree("gear?teeth=16&triangles=5000");
+    let body = |name: &str, tree: &Arc<MeshTree>| Body::new(name, Arc::clone(tree)).with_restitution(0.9);
+    let turning = ConstantTwist::REST.with_angular_velocity(DVec3::Z * 200.0);
+    simulation.add(&body("drive", &gear).with_kind(Kind::Kinematic(Arc::new(turning)))).unwrap();
+    let pin = body("pin", &tree("shaft?scale=0.58&triangles=2000")).with_kind(Kind::Static);
+    simulation.add(&pin.with_position(DVec3::X * 1.88)).unwrap();
+    let plate = tree("box?x=0.6&y=0.6&z=0.05");
+    for z in [0.3, -0.3] {
+        let cap = body("cap", &plate).with_kind(Kind::Static);
+        simulation.add(&cap.with_position(DVec3::new(1.88, 0.0, z))).unwrap();
+    }
+    let driven = body("driven", &gear).with_friction(0.1).with_position(DVec3::X * 1.88);
+    let half_a_tooth = DQuat::from_rotation_z(core::f64::consts::PI / 16.0);
+    let driven = simulation.add(&driven.with_orientation(half_a_tooth)).unwrap();
+    let report = simulation.step().unwrap();
+    assert!(report.segments.iter().all(|segment| segment.skipped == 0.0));
+    assert!(report.events > 10 && simulation.angular_velocity(driven).z < -50.0, "{}", report.events);
 }

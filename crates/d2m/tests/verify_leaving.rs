@@ -298,9 +298,14 @@ fn bodies_a_few_tolerances_apart_may_be_in_contact() {
     let (mut left, mut stayed) = (0, 0);
     for case in 0..600 {
         let tolerance = 10f64.powf(-2.0 - 3.0 * random.unit());
-        let most = if case % 2 == 0 { 4.0 } else { 1.2 };
-        let [first, last] = [0, 1].map(|_| tolerance * most * random.unit());
-        let min_separation = if case % 3 == 0 { 0.05 } else { 0.0 };
+        // Or just above the tolerance, where searches stop and nothing proves the bodies within it.
+        let mut some = |from: f64, to: f64| tolerance * (from + (to - from) * random.unit());
+        let [first, last] = match case % 3 {
+            0 => [some(0.0, 4.0), some(0.0, 4.0)],
+            1 => [some(0.0, 1.0), some(1.0, 1.05)],
+            _ => [some(1.0, 1.05), some(0.0, 1.2)],
+        };
+        let min_separation = if case % 4 == 0 { 0.05 } else { 0.0 };
         // Beside the inside of a face, so that no other distance is less.
         let place = DVec3::new(0.7 + min_separation + first, 0.2 * random.signed(), 0.2 * random.signed());
         let going = ConstantTwist::REST.with_position(place).with_linear_velocity(DVec3::X * (last - first));
@@ -311,5 +316,5 @@ fn bodies_a_few_tolerances_apart_may_be_in_contact() {
         left += usize::from(answer.left.is_some());
         stayed += usize::from(answer.left.is_none());
     }
-    assert!(left > 200 && stayed > 100, "{left} {stayed}");
+    assert!(left > 200 && stayed > 50, "{left} {stayed}");
 }
