@@ -1,7 +1,7 @@
 //! From the first root to the answer: the certified time and the contact's data.
 
 use super::Moving;
-use super::distance::{ClosestPair, enclose_distance};
+use super::distance::{ClosestPair, are_within, enclose_distance};
 use super::leaf_pair::Candidate;
 use super::sphere_tree::SphereTree;
 use super::step_back::{Disjoint, estimate_relative_velocity, step_back};
@@ -53,8 +53,8 @@ fn describe(
     let mut contact = contact_of_pair(bodies, disjoint.time, tolerance, &disjoint.pair);
     // A bracket holds what may be a root: that the bodies have met by its end is measured.
     let end = best.bracket.hi().max(disjoint.time);
-    let met = enclose_distance(bodies[0].body, bodies[1].body, &relative.placement(end), 2.0 * tolerance);
-    if met.upper <= tolerance {
+    let ([a, b], at_end) = (bodies.each_ref().map(|body| body.body), relative.placement(end));
+    if are_within(a, b, &at_end, tolerance, [disjoint.pair.triangle_a, disjoint.pair.triangle_b]) {
         (contact.time_hi, contact.evidence) = (end, Evidence::Near);
     }
     contact.separation = disjoint.distance.lower;

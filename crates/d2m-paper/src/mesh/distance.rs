@@ -117,12 +117,30 @@ impl PlacedLeaf {
         self.node = node;
         self.triangles.clear();
         for &triangle in &tree.leaf(tree.node(node)).triangles {
-            let enclosed = tree.corners(triangle).map(|p| place.enclose_point(p));
-            let corners = enclosed.map(IntervalVec3::mid);
-            let rounding = (0..3).map(|i| (enclosed[i] - corners[i]).norm().hi()).fold(0.0, f64::max);
+            let (corners, rounding) = placed(tree, triangle, place);
             self.triangles.push((triangle, corners, rounding));
         }
     }
+}
+
+/// A triangle of A in B's frame, and how far its vertices may be from there.
+fn placed(tree: &SphereTree, triangle: u32, place: &Placement) -> ([DVec3; 3], f64) {
+    let enclosed = tree.corners(triangle).map(|p| place.enclose_point(p));
+    let corners = enclosed.map(IntervalVec3::mid);
+    (corners, (0..3).map(|i| (enclosed[i] - corners[i]).norm().hi()).fold(0.0, f64::max))
+}
+
+/// Are A, placed in B's frame, and B within this distance of each other for certain? These two triangles are looked at first.
+pub(crate) fn are_within(
+    a: &SphereTree,
+    b: &SphereTree,
+    place: &Placement,
+    distance: f64,
+    [of_a, of_b]: [u32; 2],
+) -> bool {
+    let (corners, rounding) = placed(a, of_a, place);
+    (triangle_distance(&corners, &b.corners(of_b)).upper + rounding).next_up() <= distance
+        || enclose_distance(a, b, place, 2.0 * distance).upper <= distance
 }
 
 fn leaf_pairs(
