@@ -130,7 +130,7 @@ fn placed(tree: &SphereTree, triangle: u32, place: &Placement) -> ([DVec3; 3], f
     (corners, (0..3).map(|i| (enclosed[i] - corners[i]).norm().hi()).fold(0.0, f64::max))
 }
 
-/// Are A, placed in B's frame, and B within this distance of each other for certain? These two triangles are looked at first.
+/// Are A, placed in B's frame, and B within this distance of each other for certain? These two triangles are compared first.
 pub(crate) fn are_within(
     a: &SphereTree,
     b: &SphereTree,
