@@ -272,3 +272,29 @@ fn a_lift_raises_what_sleeps_on_it() {
         assert!((came - 100.0 * rise).abs() < simulation.options().gap, "{came}");
     }
 }
+
+/// Boxes that lie on two others each, 78 of them: what solutions leave at each level adds up to the top, and was lifted again for ever.
+#[test]
+fn pyramids_of_many_boxes_fall_asleep() {
+    for step in [0.01, 1.0 / 240.0] {
+        let mut simulation = Simulation::new(SimulationOptions::default().with_step(step)).unwrap();
+        let floor =
+            Body::new("floor", tree("box?x=30&y=0.5&z=30")).with_kind(Kind::Static).with_friction(0.5);
+        simulation.add(&floor.with_position(DVec3::NEG_Y * 0.5)).unwrap();
+        let cube = tree("box?x=0.5&y=0.5&z=0.5");
+        let levels = (0..12).flat_map(|level| (0..12 - level).map(move |k| (level, k)));
+        let place = |(level, k): (i32, i32)| {
+            DVec3::new(1.05 * (f64::from(k) + 0.5 * f64::from(level)), 0.501 + 1.001 * f64::from(level), 0.0)
+        };
+        let places: Vec<DVec3> = levels.map(place).collect();
+        let boxes: Vec<BodyId> =
+            places.iter().map(|&place| simulation.add(&body("box", &cube, 0.5, place)).unwrap()).collect();
+        while simulation.time() < 1.0 {
+            assert_eq!(simulation.step().unwrap().segments.iter().map(|s| s.skipped).sum::<f64>(), 0.0);
+        }
+        assert_eq!(asleep(&simulation, &boxes), 78, "{step}");
+        let off = |(id, place): (&BodyId, &DVec3)| (simulation.position(*id) - *place).length();
+        let moved = boxes.iter().zip(&places).map(off).fold(0.0, f64::max);
+        assert!(moved < 1e-5, "{step}: {moved}");
+    }
+}

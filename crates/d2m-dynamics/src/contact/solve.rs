@@ -14,8 +14,11 @@ use glam::DVec3;
 const COUPLE: usize = 4;
 /// Moved bodies up to which solutions are exact whatever the bodies do.
 const FEW: usize = 20;
-/// And up to which they are where bodies are about to rest: tall stacks need it, and their factors are small.
+/// And up to which what is jammed may stick as it comes to rest.
 const SOME: usize = 64;
+/// Contacts up to which solutions are exact where bodies are about to rest: what sweeps leave at each level of a pile adds up to its top, is
+/// lifted where the gap is restored, and never rests.
+const SETTLING: usize = 1 << 14;
 /// Ratio of masses beyond which sweeps converge too slowly.
 const MOST_RATIO: f64 = 30.0;
 /// Sweeps at most, where they come first, and where they come last.
@@ -76,10 +79,7 @@ impl System {
                     system.sweep_until(targets, accuracy, Pace::Conjugate, FIRST)
                 });
             }
-            if accuracy.is_still(residual) {
-                return residual;
-            }
-            let rests = moved <= SOME && self.is_calm(accuracy);
+            let rests = self.rests(accuracy);
             if moved > COUPLE && !rests && !could_stick && !self.is_long() {
                 if residual <= self.enough(accuracy).max(LEFT_OVER * self.swept(accuracy)) {
                     return residual;
@@ -128,7 +128,7 @@ impl System {
         } else {
             tolerance
         };
-        accuracy.still.map_or(aim, |still| aim.max(still)).max(self.rounding())
+        aim.max(self.rounding())
     }
 
     /// What rounding leaves of rates: impulses change those of a light body between heavy ones by far more than it moves.
@@ -141,15 +141,14 @@ impl System {
     pub(super) fn enough(&self, accuracy: Accuracy) -> f64 {
         let tolerance = self.tolerance(accuracy);
         let moved = self.moved();
-        let is_exact = self.has_joints || moved <= SOME && self.is_calm(accuracy);
-        let enough = if is_exact || moved <= COUPLE && !accuracy.in_crowd() {
+        let is_exact = self.has_joints || self.rests(accuracy);
+        if is_exact || moved <= COUPLE && !accuracy.in_crowd() {
             self.aim(accuracy)
         } else if self.is_long() || moved <= FEW && !accuracy.in_crowd() {
             SEVERAL * tolerance
         } else {
             CROWDED * tolerance
-        };
-        accuracy.still.map_or(enough, |still| enough.max(still))
+        }
     }
 
     /// What solutions of bodies that move may leave.
@@ -162,6 +161,11 @@ impl System {
         let may_sweep =
             accuracy.in_crowd() && !self.is_long() && (self.is_crowd() || !self.is_calm(accuracy));
         if may_sweep { (SWEPT * accuracy.slow).min(OF_SPEED * self.mean_speed()) } else { 0.0 }
+    }
+
+    /// Are the bodies about to rest, and so few that they are solved exactly?
+    fn rests(&self, accuracy: Accuracy) -> bool {
+        self.blocks.len() <= SETTLING && self.is_calm(accuracy)
     }
 
     /// Are the bodies about to rest, all that contacts connect?
@@ -322,7 +326,7 @@ mod tests {
         let left = |is_row: bool| {
             let mut column = System { is_row, ..column(count, 10.0) };
             column.bodies.iter_mut().for_each(|body| body.velocity.linear.x = 1e4);
-            let (precision, relative, slow) = (1e-9, 1.0 / 1024.0, f64::INFINITY);
+            let (precision, relative, slow) = (1e-9, 1.0 / 1024.0, 1e4);
             let accuracy =
                 Accuracy { precision, relative, aim: 1.0, company: Company::Crowd, slow, still: None };
             column.solve(&vec![0.0; count], accuracy, Start::Present)

@@ -44,7 +44,11 @@ pub(super) fn cases(cases: &mut Vec<Case>, seed: u64) {
             cases.push(Case::new("overhang", variant, 2.0, move |scene| overhang(scene, count, part)));
         }
     }
-    for (rows, columns) in [(3, 4), (6, 6)] {
+    for levels in [8, 12, 16, 24] {
+        let build = move |scene| pyramid(scene, levels);
+        cases.push(Case::new("pyramid", format!("of {levels} levels"), 1.0, build).with_options(awake));
+    }
+    for (rows, columns) in [(3, 4), (6, 6), (12, 12), (20, 10)] {
         let variant = format!("of {rows} rows and {columns} columns");
         cases.push(Case::new("wall", variant, 1.0, move |scene| wall(scene, rows, columns)));
     }
@@ -86,6 +90,21 @@ fn stack(
             body = body.with_orientation(DQuat::from_rotation_y(10.0 * off()));
         }
         scene.add(body.with_position(place))?;
+    }
+    under(scene, vec![stays(CREEP), rests(1e-3)])
+}
+
+/// Boxes in a plane, each on two others. What solutions leave at each level adds up to the top.
+fn pyramid(mut scene: Scene, levels: u32) -> Result<Trial, Error> {
+    scene.add(floor(0.0, 0.5)?)?;
+    let shape = cuboid(DVec3::splat(0.5))?;
+    for level in 0..levels {
+        let y = 0.5 + GAP + (1.0 + GAP) * f64::from(level);
+        for k in 0..levels - level {
+            let x = 1.05 * (f64::from(k) - 0.5 * f64::from(levels - level - 1));
+            let body = free(format!("box {level} {k}"), &shape, 0.5).with_mass(Mass::Total(1.0));
+            scene.add(body.with_position(DVec3::new(x, y, 0.0)))?;
+        }
     }
     under(scene, vec![stays(CREEP), rests(1e-3)])
 }
