@@ -18,7 +18,8 @@ use glam::DVec3;
 /// `options.tolerance`, or rounding of the poses hides more than that.
 ///
 /// f(t) = n·(q(t) − b), the signed distance to the plane, with f′ and f″ of Appendix D; Γ of Algorithm 4; the search
-/// is [`hrfoi`]. Works for any [`RigidMotion`](d2m_motion::RigidMotion) through its enclosures.
+/// is [`hrfoi`]. Works for any [`RigidMotion`](d2m_motion::RigidMotion) through its enclosures; over a span with a joint inside, those of the
+/// places alone, so windows without joints are faster.
 ///
 /// ```
 /// use d2m_paper::{PaperOptions, RelativeMotion, point_triangle};

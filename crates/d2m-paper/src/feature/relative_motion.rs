@@ -163,15 +163,26 @@ impl<'a> RelativeMotion<'a> {
 
     /// The frame of the observer over `span`: every point of the mover then costs three matrix products.
     pub fn frame(&self, span: Interval) -> RelativeFrame {
-        let start = self.state(Interval::point(span.lo()));
         let all = self.state(span);
+        if self.has_joint(span) {
+            return Self::observers_frame(span, &all, &all).standing();
+        }
+        let start = self.state(Interval::point(span.lo()));
         Self::observers_frame(span, &start, &all)
+    }
+
+    fn has_joint(&self, span: Interval) -> bool {
+        self.constant_twists.is_none()
+            && [self.mover, self.observer].iter().any(|motion| has_joint(*motion, span))
     }
 
     /// The mover in the observer's frame and the observer in the mover's, over `span`.
     ///
     /// The matrices of the one are the transposes of the other's.
     pub fn frames(&self, span: Interval) -> [RelativeFrame; 2] {
+        if self.has_joint(span) {
+            return [self.frame(span), self.swapped().frame(span)];
+        }
         let start = self.state(Interval::point(span.lo()));
         let all = self.state(span);
         let first = Self::observers_frame(span, &start, &all);
@@ -217,6 +228,12 @@ impl<'a> RelativeMotion<'a> {
             matrix: [position.1, velocity.1, acceleration.1],
         }
     }
+}
+
+/// May velocities or accelerations of the motion jump inside of the span?
+pub(crate) fn has_joint(motion: &dyn RigidMotion, span: Interval) -> bool {
+    // An end that is no number, or none after the start, is one inside.
+    motion.smooth_until(span.lo()).is_some_and(|end| end.is_nan() || end < span.hi())
 }
 
 /// x_m(t) − x_o(t) with the world offset cancelled first.
@@ -282,8 +299,11 @@ impl Placement {
     }
 }
 
+/// A matrix of zeros.
+const NO_TURN: IntervalMat3 = IntervalMat3::from_rows([IntervalVec3::ZERO; 3]);
+
 /// The relative motion over one span: position and velocity at its start, acceleration throughout, each affine in the
-/// body point.
+/// body point. Over a span inside of which a motion has a joint: its positions, velocities down to none, and no acceleration.
 ///
 /// ```
 /// use d2m_interval::Interval;
@@ -305,6 +325,15 @@ pub struct RelativeFrame {
 }
 
 impl RelativeFrame {
+    /// Of enclosures over all of the span: what stands still where the mover is at any time of it. Where velocities jump no expansion about the
+    /// start holds, but this one does: at each time the mover is where one that stands still is.
+    fn standing(mut self) -> Self {
+        self.constant[1] = self.constant[1].hull(IntervalVec3::ZERO);
+        self.matrix[1] = self.matrix[1].hull(NO_TURN);
+        (self.constant[2], self.matrix[2]) = (IntervalVec3::ZERO, NO_TURN);
+        self
+    }
+
     /// The span of time for which it holds.
     pub const fn span(&self) -> Interval {
         self.span

@@ -1,6 +1,7 @@
 //! Sphere-Over-Domain and Test-Sphere-Pair (section IV-D and Algorithm 5 of the paper).
 
 use super::PointJet;
+use super::relative_motion::has_joint;
 use d2m_interval::{Interval, IntervalMat3, IntervalVec3};
 use d2m_motion::RigidMotion;
 use d2m_root::InclusionFunction;
@@ -24,6 +25,8 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug)]
 pub struct BodyOverDomain {
     span: Interval,
+    /// A joint of the motion is inside of the span. At each time the body is where one that stands still is: of any place of the span.
+    stands: bool,
     at: DVec3,
     rotation: [IntervalMat3; 2],
     position: [IntervalVec3; 2],
@@ -44,11 +47,14 @@ impl BodyOverDomain {
             }
             None => world - center,
         };
+        let stands = has_joint(motion, span);
+        let start = if stands { span } else { start };
         let (p0, p) = (motion.enclose_pose(start), motion.enclose_pose(span));
         let (t0, t) = (motion.enclose_twist(start), motion.enclose_twist(span));
         let rate = motion.enclose_twist_rate(span);
         Self {
             span,
+            stands,
             at: p0.at,
             rotation: [p0.rotation, p.rotation],
             position: [position(start, p0.translation), position(span, p.translation)],
@@ -72,19 +78,17 @@ impl BodyOverDomain {
     pub fn sphere(&self, center: DVec3, radius: f64) -> SphereOverDomain {
         let r = IntervalVec3::point(center) - self.at;
         let arm = [self.rotation[0].mul_vec(r), self.rotation[1].mul_vec(r)];
-        let velocity = |i: usize| self.twist[i][0] + self.twist[i][1].cross(arm[i]);
         let spin = self.twist[1][1];
-        let acceleration = self.rate[0] + self.rate[1].cross(arm[1]) + spin.cross(spin.cross(arm[1]));
+        let mut velocity = [0, 1].map(|i| self.twist[i][0] + self.twist[i][1].cross(arm[i]));
+        let mut acceleration = self.rate[0] + self.rate[1].cross(arm[1]) + spin.cross(spin.cross(arm[1]));
+        if self.stands {
+            velocity = velocity.map(|v| v.hull(IntervalVec3::ZERO));
+            acceleration = IntervalVec3::ZERO;
+        }
         let position = [self.position[0] + arm[0], self.position[1] + arm[1]];
         let thick = Interval::new(-radius, radius);
         let cube = IntervalVec3::new(thick, thick, thick);
-        SphereOverDomain {
-            position,
-            velocity: [velocity(0), velocity(1)],
-            acceleration,
-            radius,
-            bounding_box: position[1] + cube,
-        }
+        SphereOverDomain { position, velocity, acceleration, radius, bounding_box: position[1] + cube }
     }
 }
 

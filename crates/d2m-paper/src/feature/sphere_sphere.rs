@@ -47,7 +47,9 @@ pub fn sphere_sphere(
     };
     let start = Interval::point(window.lo());
     // f has a sign inside as well: a start that is not certainly apart is a contact, not a function without a root.
-    if !pair.gap(Interval::ZERO).certainly_positive() {
+    // The window's own enclosures may be wider there.
+    let now = motion.frame(start).jet(mover.center);
+    if !pair.gap_of(&now, Interval::ZERO).certainly_positive() {
         return RootSearch::Bracket(start);
     }
     hrfoi(&mut pair, window, options.limits(speed))
@@ -72,7 +74,11 @@ impl SpherePair<'_> {
 
     /// Encloses the distance of the surfaces over the offsets `x`; negative inside.
     fn gap(&self, x: Interval) -> Interval {
-        (self.jet.enclose(x) - self.observer).norm() - self.radii
+        self.gap_of(&self.jet, x)
+    }
+
+    fn gap_of(&self, jet: &PointJet, x: Interval) -> Interval {
+        (jet.enclose(x) - self.observer).norm() - self.radii
     }
 }
 

@@ -107,7 +107,7 @@ pub fn time_of_contact(
     }
     let features = PaperOptions::DEFAULT.with_tolerance(0.5 * tolerance);
     let mut search = Search::new(bodies, features, options.mode, meter);
-    let stopped = search.search_stretch(span, stretch::longest(&bodies, span)).err();
+    let stopped = search.search(span).err();
     match (search.best, stopped) {
         (None, None) => Ok(TimeOfContact::Separated),
         (best, Some(stopped)) => {

@@ -3,6 +3,7 @@
 use super::Moving;
 use super::leaf_pair::{Box3, Candidate, LeafPair, TreeLeaf, still_open};
 use super::sphere_tree::{Leaf, SphereTree};
+use super::stretch;
 use crate::feature::{
     BodyOverDomain, PaperOptions, PointJet, RelativeMotion, SphereOverDomain, boxes_meet, test_sphere_pair,
 };
@@ -116,11 +117,33 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Searches a window, one smooth piece of both motions after the other, and a moment about each joint: where pieces of a motion meet up to
+    /// rounding only, what lies between them is enclosed with both.
+    pub(crate) fn search(&mut self, window: Interval) -> Result<(), Stopped> {
+        let mut now = window.lo();
+        while self.best.is_none_or(|best| now < best.bracket.lo()) {
+            let ends = self.bodies.iter().filter_map(|body| body.motion.smooth_until(now));
+            // An end that is no number ends now.
+            let end = ends.map(|end| end.max(now)).fold(window.hi(), f64::min);
+            if end <= now && now < window.hi() {
+                return Err(Stopped { clear_until: now });
+            }
+            let piece = Interval::new(now, end);
+            self.search_stretch(piece, stretch::longest(&self.bodies, piece))?;
+            if end >= window.hi() {
+                break;
+            }
+            self.search_stretch(Interval::new(end.next_down(), end.next_up()), f64::INFINITY)?;
+            now = end;
+        }
+        Ok(())
+    }
+
     /// Searches `stretch`, halving it while it is longer than `longest` and the bodies' spheres may meet in it.
     ///
     /// Epoch rebase and recentering happen at every stretch: the enclosures start at its first instant and positions are
     /// taken from the middle between the bodies.
-    pub(crate) fn search_stretch(&mut self, stretch: Interval, longest: f64) -> Result<(), Stopped> {
+    fn search_stretch(&mut self, stretch: Interval, longest: f64) -> Result<(), Stopped> {
         let mut open = vec![stretch];
         while let Some(stretch) = open.pop() {
             let Some(stretch) = still_open(stretch, self.best.as_ref()) else { break };
