@@ -5,7 +5,7 @@
 /// v = 2⁻⁵³.
 pub use d2m_lanes::UNIT as UNIT_F64;
 #[doc(no_inline)]
-pub use d2m_motion::length;
+pub use d2m_motion::{direction, length};
 
 /// u = 2⁻²⁴.
 pub const UNIT_F32: f64 = 1.0 / 16_777_216.0;

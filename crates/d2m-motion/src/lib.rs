@@ -31,7 +31,7 @@
 //! [`Kinematics`], [`CertifiedState`] and [`Ball`] make enclosures tight, [`StateTwist`] is a motion through
 //! the middle of a state, and [`TwistPiece`] says where a motion is a constant twist for a while.
 //! [`FittedTwists`] are constant twists near two motions ([`MovingBall`]s) for a while, by a [`FittedClock`].
-//! [`CoveredMotion`] holds a motion to the times that it covers. [`length`] is that of a vector in any unit, [`angle`] that of a
+//! [`CoveredMotion`] holds a motion to the times that it covers. [`length`] and [`direction`] are those of a vector in any unit, [`angle`] that of a
 //! point about an axis.
 //!
 //! ## Errors
@@ -107,7 +107,7 @@ pub use joint_value::JointValue;
 pub use kept_motion::KeptMotion;
 pub use keyframes::{KeyframeSpan, Keyframes, LARGEST_GAP, Span};
 pub use kinematics::Kinematics;
-pub use length::length;
+pub use length::{direction, length};
 pub use pose::{IntervalPose, Pose};
 pub use retimed::Retimed;
 pub use rigid_motion::{RigidMotion, TwistPiece};

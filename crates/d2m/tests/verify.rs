@@ -305,6 +305,27 @@ fn answers_are_proven_in_any_unit_of_length() {
     }
 }
 
+/// Squares of lengths below 1e-162 are no numbers: the points of rounded bodies were those of their meshes there, and their normal was none.
+#[test]
+fn rounded_bodies_have_their_points_in_any_unit_of_length() {
+    for power in [-900, -700, -520, 0, 180] {
+        let unit = 2f64.powi(power);
+        let tree = MeshTree::new(mesh(&Surface::cube(0.5 * unit)));
+        let verifier = Verifier::try_new(tree.mesh(), tree.mesh()).unwrap();
+        let passing = ConstantTwist::REST
+            .with_position(DVec3::new(1.5, 1.25, 0.0) * unit)
+            .with_linear_velocity(DVec3::new(-1.0, 0.0, 0.25) * unit);
+        let bodies = [&ConstantTwist::REST, &passing]
+            .map(|motion| Moving::new(&tree, motion).with_radius(0.0625 * unit));
+        let (wanted, [a, b]) = (ClearanceOptions::default(), bodies);
+        let answer = clearance(a, b, Window::UNIT, &wanted).unwrap();
+        let verdict = verifier.clearance(&bodies, Window::UNIT, &wanted, &answer, STEPS);
+        assert!(matches!(verdict, Verdict::Verified { .. }), "{power}: {answer:?} {verdict:?}");
+        assert!((answer.normal - DVec3::Y).length() < 1e-9, "{power}: {}", answer.normal);
+        assert!((answer.point_a.y / unit - 0.5625).abs() < 1e-9, "{power}: {}", answer.point_a);
+    }
+}
+
 /// What is held a little further from a wall than the tolerance, and slides along it while both turn: its least distance is none from the start on.
 #[test]
 fn what_slides_along_a_wall_inside_is_proven_to_be_held() {

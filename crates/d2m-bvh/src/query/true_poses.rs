@@ -3,6 +3,7 @@
 use crate::moving::triangles_of;
 use crate::{Moving, Window};
 use d2m_feature::{TriangleDistance, TrianglesAt};
+use d2m_mesh::margin::direction;
 
 /// Steps of Newton's method towards the time at which two triangles meet.
 const STEPS: u32 = 8;
@@ -40,7 +41,7 @@ impl Meeting<'_> {
             if self.is_near(&placed, &near) {
                 return Some(time);
             }
-            let along = (near.point_b - near.point_a).normalize_or_zero();
+            let along = direction(near.point_b - near.point_a);
             let target = self.separation + AIM * self.tolerance;
             // Also backwards: triangles that have passed each other were together at some time.
             let next = time + (near.upper - target) / placed.closing_speed(&near, along);

@@ -25,6 +25,7 @@ use crate::{
     Window,
 };
 use d2m_feature::{FeaturePair, TriangleFeature};
+use d2m_mesh::margin::direction;
 use d2m_mesh::parallel::map_in_order;
 use sample::{Sample, Sampler, closer};
 use way::{Way, WayEnd};
@@ -384,7 +385,7 @@ impl<'a> Descent<'a> {
 
     fn describe(&self, best: &Sample, lower: f64, status: ClearanceStatus) -> Clearance {
         let [point_a, point_b] = best.points;
-        let normal = (best.near.point_b - best.near.point_a).normalize_or_zero();
+        let normal = direction(best.near.point_b - best.near.point_a);
         let [radius_a, radius_b] = self.rounded.radii;
         Clearance {
             lower,

@@ -4,6 +4,7 @@ use crate::moving::triangles_of;
 use crate::{Moving, Posed, Window};
 use d2m_feature::{TriangleDistance, TrianglesAt};
 use d2m_mesh::at_rest::{Nearness, near_pair};
+use d2m_mesh::margin::direction;
 use glam::DVec3;
 
 /// Parts of the window at whose ends the centers of the bodies are compared, and steps from the closest of them.
@@ -57,7 +58,7 @@ impl Sampler<'_> {
     pub(super) fn pair_at(&self, triangles: [u32; 2], time: f64) -> Sample {
         let placed = TrianglesAt::new(&triangles_of(&self.bodies, triangles), time);
         let near = placed.distance();
-        let along = (near.point_b - near.point_a).normalize_or_zero();
+        let along = direction(near.point_b - near.point_a);
         Sample {
             time,
             triangles,

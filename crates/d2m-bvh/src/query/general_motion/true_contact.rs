@@ -6,6 +6,8 @@ use crate::query::at_start::of_pair;
 use crate::query::report::MOST_LEFT;
 use crate::{Contact, Evidence, Mode, StartState};
 use d2m_feature::TrianglesAt;
+use d2m_mesh::margin::direction;
+use glam::DVec3;
 
 impl Advance<'_> {
     /// Data of the fitted motions expressed by the true ones: points by their weights, speeds by the true twists. That the
@@ -58,7 +60,8 @@ impl Advance<'_> {
     pub(super) fn of_same_triangles(&self, time: f64, contact: &Contact) -> Contact {
         let triangles = [contact.triangle_a, contact.triangle_b];
         let near = TrianglesAt::new(&triangles_of(&self.bodies, triangles), time).distance();
-        let normal = (near.point_b - near.point_a).normalize_or(contact.normal);
+        let normal = direction(near.point_b - near.point_a);
+        let normal = if normal == DVec3::ZERO { contact.normal } else { normal };
         let then = self.with_start(Contact { time_lo: time, time_hi: time, ..*contact });
         of_pair(then, &self.bodies, triangles, normal)
     }
