@@ -27,8 +27,16 @@ struct About {
     time: Option<[f64; 2]>,
     point: Option<[f64; 3]>,
     start: Option<StartState>,
+    start_proven: Option<bool>,
     left: Option<[f64; 2]>,
     clearance: Option<[f64; 2]>,
+}
+
+impl About {
+    /// How the bodies are said to stand at the start: where that is not proven, a word stands for what is not decided.
+    fn start(&self) -> Option<StartState> {
+        if self.start_proven == Some(false) { Some(StartState::Undecided) } else { self.start }
+    }
 }
 
 /// What the answer has to be about.
@@ -134,17 +142,22 @@ impl AnswerFile<'_> {
         // Bodies that never part have left at no time.
         let is_leaving = object.get("left").is_some();
         let left = about.left.map(|[lo, hi]| json!([lo, hi]));
-        let start = about.start.unwrap_or(StartState::Apart);
+        let start = about.start().unwrap_or(StartState::Apart);
+        let is_word = about.start.is_none_or(|word| start_in_json(word) == start_in_json(start));
+        self.check("start", is_word)?;
         // After bodies have parted they are apart; what is said of the start is said of the window.
         if left.is_some() {
             object["start"] = json!(StartState::Apart);
+        } else if about.start.is_some() {
+            object["start"] = json!(start);
         }
         let answer: TimeOfContact =
             serde_json::from_value(object).map_err(|error| self.fault(&about.status, error))?;
         // Of a contact it is a part of what is promised.
         if !is_leaving && answer.contact().is_none() {
-            let known = &contact_fields(&answer, window)["start"];
-            self.check("start", about.start.is_none_or(|said| known == start_in_json(said)))?;
+            let known = contact_fields(&answer, window);
+            self.check("start", about.start.is_none_or(|said| known["start"] == start_in_json(said)))?;
+            self.check("start_proven", about.start_proven.is_none_or(|said| known["start_proven"] == said))?;
         }
         match &answer {
             TimeOfContact::Separated => self.check("toc", about.toc.is_none() && about.time.is_none())?,

@@ -4,6 +4,7 @@ mod shell;
 
 use serde_json::{Value, json};
 use shell::{Folder, d2m, stderr, stdout};
+use std::fmt::Write as _;
 use std::process::Output;
 
 const BODIES: [&str; 6] = [
@@ -147,6 +148,69 @@ fn what_is_not_known_of_the_start_is_not_said() {
             assert!(code == Some(3) && said.contains("start: "), "{lie}: {code:?} {said}");
         }
     }
+}
+
+/// A start that is not proven has a word that says nothing: answers are verified without it, and not with it.
+#[test]
+fn a_start_that_is_not_proven_is_but_a_word() {
+    let folder = Folder::new("verify-word");
+    // A cube in a hole of its size, which it cannot leave, and one of which the budget ends the search of the start.
+    let hollow = hollow_cube();
+    let hollow = folder.file("hollow.obj", &hollow);
+    let fits = [hollow.as_str(), "shape:box?x=0.5&y=0.5&z=0.5"];
+    let cubes = ["shape:box?x=0.5&y=0.5&z=0.5"; 2];
+    for (bodies, place, budget) in
+        [(fits, "x=0,0,0", "1000000"), (cubes, "x=3,0,0;v=-1,0,0", "0"), (cubes, "x=0.5,0,0", "0")]
+    {
+        for start in ["report", "leave"] {
+            let words = [&bodies[..], &["--motion-b", place, "--start", start]].concat();
+            let out = d2m(&[&["toc", "--json", "--budget", budget], &words[..]].concat());
+            let answer: Value = serde_json::from_str(&stdout(&out)).unwrap();
+            if answer["status"] == "separated" {
+                continue;
+            }
+            let code = |answer: &Value| {
+                let path = folder.file("answer.json", &answer.to_string());
+                d2m(&[&["verify", "--answer", &path], &words[..]].concat()).status.code()
+            };
+            assert_eq!((&answer["start"], &answer["start_proven"]), (&json!("overlapping"), &json!(false)));
+            assert_eq!(code(&answer), Some(0), "{answer}");
+            for (word, proven, refused) in
+                [("overlapping", true, 21), ("apart", true, 21), ("apart", false, 3), ("touching", false, 3)]
+            {
+                let mut lie = answer.clone();
+                (lie["start"], lie["start_proven"]) = (json!(word), json!(proven));
+                // That they overlap is true of the last ones, and proven where it is part of the answer.
+                let is_true = place == "x=0.5,0,0" && word == "overlapping" && start == "leave";
+                let code = code(&lie);
+                let is_refused = code == Some(refused) || refused == 21 && code == Some(3);
+                assert!(
+                    if is_true { code == Some(0) } else { is_refused || code == Some(20) },
+                    "{code:?} {lie}"
+                );
+            }
+        }
+    }
+}
+
+/// A cube of half side one with a hole of half side a half.
+fn hollow_cube() -> String {
+    let mut text = String::new();
+    for (half, inward) in [(1.0, false), (0.5, true)] {
+        let first = if inward { 9 } else { 1 };
+        for i in 0..8 {
+            let at = |axis: i32| if i >> axis & 1 == 0 { -half } else { half };
+            writeln!(text, "v {} {} {}", at(0), at(1), at(2)).unwrap();
+        }
+        for mut face in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
+            if inward {
+                face.reverse();
+            }
+            let [a, b, c, d] = face.map(|i| i + first);
+            writeln!(text, "f {a} {b} {c} {d}").unwrap();
+        }
+    }
+    text
 }
 
 /// Answers of other questions: as they are printed they are verified, edited they are not.

@@ -184,6 +184,49 @@ fn how_bodies_that_leave_stood_at_the_start_is_proven() {
     }
 }
 
+/// Bodies that begin apart have left at once: nobody is told so of a start of which nothing else is proven.
+#[test]
+fn what_begins_apart_is_proven_apart() {
+    let cube = cube(1.0);
+    for (from, speed) in [(1.5, 1.0), (2.0, 0.0), (5.0, 1.0)] {
+        let motion = along_x(from, speed);
+        let pair = Pair::new([&cube; 2], &motion);
+        let mut said = pair.departure();
+        assert!(pair.is_departure(&said), "{said:?}");
+        (said.start, said.left) = (StartState::Apart, None);
+        said.answer = TimeOfContact::Undecided { clear_until: 0.0 };
+        assert!(!pair.is_departure(&said), "{said:?}");
+    }
+}
+
+/// How fast bodies go is no part of how deep they may be in each other where they are said to touch: at 1e12 a unit of time rounding explained
+/// any depth.
+#[test]
+fn what_overlaps_does_not_touch_however_fast_it_goes() {
+    let cube = cube(1.0);
+    for speed in [1.0, 1e9, 1e10, 1e12] {
+        for (from, start) in [
+            (1.5, StartState::Overlapping),
+            (2.0 - 1e-4, StartState::Overlapping),
+            (2.0, StartState::Touching),
+        ] {
+            let away = along_x(from, speed);
+            let pair = Pair::new([&cube; 2], &away);
+            let mut contact = *pair.first().contact().unwrap();
+            assert!(
+                contact.start == start && pair.is_first(&TimeOfContact::Contact(contact)),
+                "{speed:e}: {contact:?}"
+            );
+            (contact.start, contact.normal) = (StartState::Touching, DVec3::X);
+            assert_eq!(
+                pair.is_first(&TimeOfContact::Contact(contact)),
+                start == StartState::Touching,
+                "{speed:e} {from}"
+            );
+        }
+    }
+}
+
 /// A bracket of a meeting that nothing is shown of has no later end.
 #[test]
 fn what_is_not_shown_has_no_later_end() {

@@ -19,7 +19,8 @@ const WIDTH: f64 = 4.0;
 /// that rounding needs.
 const HIDDEN: f64 = MOST_LEFT / 0.75;
 
-/// How far bodies that touch are moved to part, at most, in errors of a distance: the engine moves them by 2⁹ of its own, which are smaller.
+/// How far bodies that touch are moved to part, at most, in errors of a distance at rest: the engine moves them by 2⁹ of its own, which are
+/// smaller.
 const LAYER: f64 = 1024.0;
 
 pub(super) const fn at(time: f64) -> TimeSpan {
@@ -83,7 +84,7 @@ pub(super) fn contact_claim(
                 StartState::Touching => claims.push(Claim::Parted {
                     time: contact.time_lo,
                     along: contact.normal,
-                    most: LAYER * scale.error,
+                    most: LAYER * scale.error_at_rest,
                 }),
                 StartState::Undecided => {}
             }

@@ -57,7 +57,8 @@ pub fn departure_claim(
                 // Where they are not proven to have left.
                 claims.extend([within(window.end(), MOST_LEFT), stay_until(window.end())]);
             }
-            TimeOfContact::Undecided { clear_until } if clear_until == window.start() => {
+            // Bodies that begin apart have left at once.
+            TimeOfContact::Undecided { .. } if is_nothing && answer.start != StartState::Apart => {
                 claims.extend(start_claim(bodies, window, options, answer.start)?);
             }
             _ => return Err(Reason::Malformed),

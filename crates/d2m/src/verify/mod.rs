@@ -8,7 +8,7 @@
 //! | `Undecided` | further apart than s until `clear_until` |
 //! | `Contact`, apart at the start | further apart than s in [start, `time_lo`] |
 //! | … touching or apart | its triangles are `separation` apart at `time_lo`, to rounding, and at most s + 3.3 δ (unless it stopped early) |
-//! | … touching at the start | they share no point, or none when B is moved along the normal by no more than 2¹⁰ roundings of the scene |
+//! | … touching at the start | they share no point, or none when B is moved along the normal by no more than 2¹⁰ roundings of the lengths of that time |
 //! | … overlapping at the start | within δ of each other then (`Crossing`: they share a point) |
 //! | … contained | a body holds a part of the other at the start |
 //! | … with evidence | within s (`Crossing`) or s + δ (`Near`) at some time of the bracket |

@@ -39,6 +39,8 @@ pub(super) struct Scale {
     pub(super) error: f64,
     /// The same of points in the coordinates of the world.
     pub(super) world_error: f64,
+    /// The same of a distance of two triangles at rest at that time: how far the bodies go in the window is no part of it.
+    pub(super) error_at_rest: f64,
 }
 
 impl Scale {
@@ -76,6 +78,7 @@ impl Scale {
             raised,
             error,
             world_error: error + ERROR * far[0].max(far[1]),
+            error_at_rest: ERROR * near + BOXES * places,
         }
     }
 
