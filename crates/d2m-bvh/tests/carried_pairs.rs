@@ -9,8 +9,8 @@ use d2m_bvh::{
 use d2m_feature::triangle_distance;
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{
-    Chain, ConstantTwist, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Pose, RigidMotion,
-    Spline, SplineDegree, Twist,
+    Chain, Composed, ConstantTwist, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Pose,
+    RigidMotion, Spline, SplineDegree, Twist,
 };
 use d2m_testing::{Draw, KnuthRandom, Surface};
 use glam::{DQuat, DVec3};
@@ -164,6 +164,59 @@ fn what_only_seems_one_motion_is_searched() {
     let kind = JointKind::Prismatic { axis: DVec3::X, value };
     let slide = base.and(Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, kind).unwrap()).unwrap();
     assert!(meet(&base, &slide) && meet(&slide, &base));
+}
+
+/// In one frame, given by equal twists, by one spline or by equal chains, that turns by hundreds of radians: as in a frame at rest.
+#[test]
+fn what_moves_in_one_frame_is_seen_from_there() {
+    let (spline, chain, twist) = (fast_spline(), fast_chain(), fast_twist());
+    let (first, second) = (cuboid_at(DVec3::ZERO, 0.5), cuboid_at(DVec3::ZERO, 0.25));
+    let turning = ConstantTwist::REST.with_angular_velocity(DVec3::new(0.3, -0.2, 0.5));
+    let budget = Budget::UNLIMITED.with_node_tests(FEW_TESTS);
+    let options = QueryOptions::default().with_budget(budget);
+    let wanted = ClearanceOptions::default().with_budget(budget);
+    for (height, meets) in [(0.25, true), (0.875, false)] {
+        let coming = ConstantTwist::REST
+            .with_position(DVec3::new(2.0, 0.125, height))
+            .with_linear_velocity(DVec3::new(-3.0, 0.0, 0.0))
+            .with_angular_velocity(DVec3::X * 0.125);
+        let at_rest = [Moving::new(&first, &turning), Moving::new(&second, &coming)];
+        let [a, b] = at_rest;
+        let alone = time_of_contact(a, b, Window::UNIT, &options).unwrap();
+        let nearest_alone = clearance(a, b, Window::UNIT, &wanted).unwrap();
+        assert_eq!(alone.contact().is_some(), meets, "{alone:?}");
+        let check = |kind: &str, outer: &dyn RigidMotion, motions: [&dyn RigidMotion; 2]| {
+            let [a, b] = [Moving::new(&first, motions[0]), Moving::new(&second, motions[1])];
+            let found = time_of_contact(a, b, Window::UNIT, &options).unwrap();
+            let nearest = clearance(a, b, Window::UNIT, &wanted).unwrap();
+            assert_eq!((nearest.lower, nearest.upper), (nearest_alone.lower, nearest_alone.upper), "{kind}");
+            let frame = outer.pose_and_twist(nearest.time).0;
+            let place = frame.transform_point(nearest_alone.point_b);
+            assert!((nearest.point_b - place).length() < 1e-12, "{kind}: {nearest:?}");
+            assert_eq!(alone.is_separated(), found.is_separated(), "{kind}");
+            if let (Some(found), Some(alone)) = (found.contact(), alone.contact()) {
+                assert_eq!((found.time_lo, found.time_hi), (alone.time_lo, alone.time_hi), "{kind}");
+                let normal = outer.pose_and_twist(found.time_lo).0.transform_vector(alone.normal);
+                assert!((found.normal - normal).length() < 1e-12, "{kind}: {found:?}");
+            }
+        };
+        let twists = [Composed::new(twist, turning), Composed::new(twist, coming)];
+        check("twists", &twist, [&twists[0], &twists[1]]);
+        let chains = [Composed::new(chain.clone(), turning), Composed::new(fast_chain(), coming)];
+        check("chains", &chain, [&chains[0], &chains[1]]);
+        // In frames that differ, or of which nothing says that they are one, they are searched.
+        let other = twist.with_position(twist.position() + DVec3::X * 1e-3);
+        let apart = [Composed::new(twist, turning), Composed::new(other, coming)];
+        let splines = [Composed::new(&spline, turning), Composed::new(&spline, coming)];
+        let some = Window::try_new(0.0, 0.02).unwrap();
+        let least = |[a, b]: [&dyn RigidMotion; 2]| {
+            let [a, b] = [Moving::new(&first, a), Moving::new(&second, b)];
+            clearance(a, b, some, &ClearanceOptions::default()).unwrap().upper
+        };
+        let known = least([&turning, &coming]);
+        assert!((least([&apart[0], &apart[1]]) - known).abs() > 1e-5);
+        assert!((least([&splines[0], &splines[1]]) - known).abs() < 1e-5 * known);
+    }
 }
 
 /// A link that turns by `rate` in unit time, and a slide on it that comes in to two tenths before the end.

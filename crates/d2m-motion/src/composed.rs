@@ -1,5 +1,5 @@
 //! A motion inside a moving frame.
-use crate::{CertifiedState, IntervalPose, IntervalTwist, Kinematics, Pose, RigidMotion, Twist};
+use crate::{CertifiedState, Composition, IntervalPose, IntervalTwist, Kinematics, Pose, RigidMotion, Twist};
 use d2m_interval::Interval;
 use glam::DVec3;
 
@@ -96,6 +96,10 @@ impl<Outer: RigidMotion, Inner: RigidMotion> RigidMotion for Composed<Outer, Inn
 
     fn enclose_kinematics(&self, t: Interval) -> Kinematics {
         self.outer.enclose_kinematics(t).then(&self.inner.enclose_kinematics(t))
+    }
+
+    fn composition(&self) -> Option<Composition<'_>> {
+        Some(Composition { outer: &self.outer, inner: &self.inner })
     }
 }
 

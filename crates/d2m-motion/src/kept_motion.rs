@@ -1,8 +1,8 @@
 //! A motion that several queries ask the same.
 
 use crate::{
-    CertifiedState, Chain, ConstantTwist, IntervalPose, IntervalTwist, Kinematics, Pose, RigidMotion, Twist,
-    TwistPiece,
+    CertifiedState, Chain, Composition, ConstantTwist, IntervalPose, IntervalTwist, Kinematics, Pose,
+    RigidMotion, Twist, TwistPiece,
 };
 use d2m_interval::Interval;
 use glam::DVec3;
@@ -84,6 +84,9 @@ impl RigidMotion for KeptMotion<'_> {
     }
     fn chain(&self) -> Option<&Chain> {
         self.motion.chain()
+    }
+    fn composition(&self) -> Option<Composition<'_>> {
+        self.motion.composition()
     }
 }
 

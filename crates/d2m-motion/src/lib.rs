@@ -20,7 +20,7 @@
 //!   angle or length over time.
 //!
 //! ## Motions made of motions
-//! [`Composed`]: a motion inside a moving frame. [`Retimed`]: the same way at another pace. [`KeptMotion`]: one that many queries
+//! [`Composed`]: a motion inside a moving frame ([`Composition`]). [`Retimed`]: the same way at another pace. [`KeptMotion`]: one that many queries
 //! ask the same.
 //!
 //! ## Poses and velocities
@@ -110,7 +110,7 @@ pub use kinematics::Kinematics;
 pub use length::{direction, length};
 pub use pose::{IntervalPose, Pose};
 pub use retimed::Retimed;
-pub use rigid_motion::{RigidMotion, TwistPiece};
+pub use rigid_motion::{Composition, RigidMotion, TwistPiece};
 pub use screw::ScrewMotion;
 pub use span_motion::SpanMotion;
 pub use spline::{Spline, SplineDegree};

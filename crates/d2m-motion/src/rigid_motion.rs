@@ -149,6 +149,32 @@ pub trait RigidMotion: Sync {
     fn chain(&self) -> Option<&Chain> {
         None
     }
+
+    /// The motion as one inside of a moving frame, if it is one: pose(t) = outer(t)·inner(t) at each time of its domain, exactly. Two bodies that
+    /// have the frame in common are seen from there.
+    fn composition(&self) -> Option<Composition<'_>> {
+        None
+    }
+}
+
+/// A motion inside of a moving frame: see [`RigidMotion::composition`].
+///
+/// ```
+/// use d2m_motion::{Composed, ConstantTwist, RigidMotion};
+/// use glam::DVec3;
+/// let round = ConstantTwist::REST.with_angular_velocity(DVec3::Z);
+/// let slide = ConstantTwist::REST.with_linear_velocity(DVec3::X);
+/// let horse = Composed::new(round, slide);
+/// let parts = horse.composition().expect("it is a motion in a frame");
+/// assert_eq!((parts.outer.constant_twist(), parts.inner.constant_twist()), (Some(round), Some(slide)));
+/// assert!(slide.composition().is_none());
+/// ```
+#[derive(Clone, Copy)]
+pub struct Composition<'a> {
+    /// How the frame moves.
+    pub outer: &'a dyn RigidMotion,
+    /// The motion in the frame.
+    pub inner: &'a dyn RigidMotion,
 }
 
 /// The methods of a type that moves as another motion does, which is what the expression finds in `self`.
@@ -205,6 +231,10 @@ macro_rules! forward {
         fn chain(&self) -> Option<&$crate::Chain> {
             let $this = self;
             $motion.chain()
+        }
+        fn composition(&self) -> Option<$crate::Composition<'_>> {
+            let $this = self;
+            $motion.composition()
         }
     };
 }

@@ -31,13 +31,19 @@ use glam::DVec3;
 /// # Ok::<(), d2m_verify::MeshFault>(())
 /// ```
 pub fn verify(query: &Query<'_>, claim: &Claim, most_steps: u64) -> Verdict {
-    // Two links of one arm are seen from the last joint that they share, bodies of one motion from that: no distance changes, but directions do.
+    // Two links of one arm are seen from the last joint that they share, bodies of one motion, or in one frame, from that: no distance changes, but
+    // directions do.
     let links = match query.bodies.map(|body| body.motion.chain()) {
         [Some(a), Some(b)] => [a, b].map(|link| link.without_first(a.common_joints(b))).to_vec(),
         _ => Vec::new(),
     };
     let mut bodies = query.bodies;
     bodies.iter_mut().zip(&links).for_each(|(body, link)| body.motion = link);
+    if let [Some(a), Some(b)] = query.bodies.map(|body| body.motion.composition())
+        && is_one_motion([a.outer, b.outer])
+    {
+        bodies.iter_mut().zip([a.inner, b.inner]).for_each(|(body, inner)| body.motion = inner);
+    }
     if is_one_motion(query.bodies.map(|body| body.motion)) {
         bodies = bodies.map(|body| Body { motion: &ConstantTwist::REST, ..body });
     }

@@ -305,6 +305,35 @@ fn answers_are_proven_in_any_unit_of_length() {
     }
 }
 
+/// What moves in one frame is proven as seen from there, however fast the frame turns.
+#[test]
+fn what_moves_in_one_frame_is_proven_in_few_steps() {
+    let tree = MeshTree::new(mesh(&Surface::cube(0.5)));
+    let verifier = Verifier::try_new(tree.mesh(), tree.mesh()).unwrap();
+    let spin = ConstantTwist::REST.with_angular_velocity(DVec3::new(200.0, -70.0, 300.0));
+    let coming = ConstantTwist::REST
+        .with_position(DVec3::new(3.0, 0.25, 0.125))
+        .with_linear_velocity(DVec3::new(-3.0, 0.0, 0.0))
+        .with_angular_velocity(DVec3::Z * 0.5);
+    let motions = [Composed::new(spin, ConstantTwist::REST), Composed::new(spin, coming)];
+    let bodies = [&motions[0], &motions[1]].map(|motion| Moving::new(&tree, motion));
+    let ([a, b], options) = (bodies, QueryOptions::default());
+    let answer = time_of_contact(a, b, Window::UNIT, &options).unwrap();
+    assert!(answer.contact().is_some(), "{answer:?}");
+    let verdict = verifier.time_of_contact(&bodies, Window::UNIT, &options, &answer, 1 << 10);
+    assert!(matches!(verdict, Verdict::Verified { .. }), "{answer:?} {verdict:?}");
+    let verdict =
+        verifier.time_of_contact(&bodies, Window::UNIT, &options, &TimeOfContact::Separated, 1 << 10);
+    assert!(matches!(verdict, Verdict::Refuted { .. }), "{verdict:?}");
+    // The same in two frames: at rest, and coming.
+    let motions = [Composed::new(ConstantTwist::REST, spin), Composed::new(coming, spin)];
+    let bodies = [&motions[0], &motions[1]].map(|motion| Moving::new(&tree, motion));
+    let early = Window::try_new(0.0, 0.01).unwrap();
+    let apart = TimeOfContact::Separated;
+    let verdict = verifier.time_of_contact(&bodies, early, &options, &apart, STEPS);
+    assert!(matches!(verdict, Verdict::Verified { .. }), "{verdict:?}");
+}
+
 /// Squares of lengths below 1e-162 are no numbers: the points of rounded bodies were those of their meshes there, and their normal was none.
 #[test]
 fn rounded_bodies_have_their_points_in_any_unit_of_length() {

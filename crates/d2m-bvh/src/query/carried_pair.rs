@@ -16,6 +16,8 @@ enum Carrier<'a> {
     World,
     /// Both move as this one: they are at rest in its frame.
     Motion(&'a dyn RigidMotion),
+    /// Both move in this frame, and so in it.
+    Frame { outer: &'a dyn RigidMotion, inner: [&'a dyn RigidMotion; 2] },
     /// The first joints of two links of one arm, and the chains of the links from there on.
     Joints { first: Chain, rest: [Chain; 2] },
 }
@@ -39,6 +41,9 @@ impl<'a> CarriedPair<'a> {
             Carrier::World => [a, b],
             Carrier::Motion(_) => {
                 [Moving { motion: &ConstantTwist::REST, ..a }, Moving { motion: &ConstantTwist::REST, ..b }]
+            }
+            Carrier::Frame { inner: [of_a, of_b], .. } => {
+                [Moving { motion: *of_a, ..a }, Moving { motion: *of_b, ..b }]
             }
             Carrier::Joints { rest: [of_a, of_b], .. } => {
                 [Moving { motion: of_a, ..a }, Moving { motion: of_b, ..b }]
@@ -75,6 +80,7 @@ impl<'a> CarriedPair<'a> {
         let frame = match &self.carrier {
             Carrier::World => return Ok([normal, a, b]),
             Carrier::Motion(motion) => frame_of(*motion, time),
+            Carrier::Frame { outer, .. } => frame_of(*outer, time),
             Carrier::Joints { first, .. } => frame_of(first, time),
         };
         // Both bodies have no pose then.
@@ -88,6 +94,12 @@ impl<'a> Carrier<'a> {
         if is_shared(a, b) {
             // A motion that has no pose is for the search to refuse.
             return frame_of(a, start).map_or(Self::World, |_| Self::Motion(a));
+        }
+        if let (Some(a), Some(b)) = (a.composition(), b.composition())
+            && is_shared(a.outer, b.outer)
+        {
+            let frame = Self::Frame { outer: a.outer, inner: [a.inner, b.inner] };
+            return frame_of(a.outer, start).map_or(Self::World, |_| frame);
         }
         let (Some(a), Some(b)) = (a.chain(), b.chain()) else { return Self::World };
         let common = a.common_joints(b);
