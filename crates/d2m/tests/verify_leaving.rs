@@ -6,12 +6,13 @@ use d2m::bvh::{ClearanceStatus, TimeBracket};
 use d2m::feature::FeaturePair;
 use d2m::verify::{Reason, Verdict, Verifier};
 use d2m::{
-    Clearance, ClearanceOptions, ConstantTwist, Contact, ContactSpan, Departure, Evidence, Keyframes,
+    Budget, Clearance, ClearanceOptions, ConstantTwist, Contact, ContactSpan, Departure, Evidence, Keyframes,
     MeshTree, Mode, Moving, Pose, QueryOptions, RigidMotion, Span, SpanStatus, Start, StartState,
     TimeOfContact, Window, clearance, contact_spans, departure, time_of_contact,
 };
 use d2m_testing::{Draw, KnuthRandom, Opaque};
 use glam::DVec3;
+use std::time::Duration;
 
 const STEPS: u64 = 1 << 20;
 
@@ -181,6 +182,20 @@ fn how_bodies_that_leave_stood_at_the_start_is_proven() {
         let mut contact = *honest.contact().unwrap();
         contact.start = lie;
         assert!(!pair.is_first(&TimeOfContact::Contact(contact)), "{lie:?}");
+    }
+}
+
+/// A time limit that ended a search is no limit of the search of what its answer claims.
+#[test]
+fn a_time_limit_is_none_of_the_proof() {
+    let cube = cube(1.0);
+    for (from, start) in [(1.5, StartState::Overlapping), (2.0, StartState::Touching)] {
+        let away = along_x(from, 2.0);
+        let mut pair = Pair::new([&cube; 2], &away);
+        let honest = pair.departure();
+        assert!(honest.start == start && honest.left.is_some(), "{honest:?}");
+        pair.options = pair.options.with_budget(Budget::UNLIMITED.with_wall_clock(Duration::ZERO));
+        assert!(pair.is_departure(&honest), "{honest:?}");
     }
 }
 

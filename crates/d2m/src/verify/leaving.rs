@@ -4,8 +4,8 @@ use super::claims::{MOST_LEFT, RESOLUTION, at, contact_claim};
 use super::rounding::{Scale, resolvable};
 use super::{Claim, Reason, TimeSpan};
 use crate::{
-    Departure, Mode, Moving, QueryError, QueryOptions, Start, StartState, TimeOfContact, Window, departure,
-    time_of_contact,
+    Budget, Departure, Mode, Moving, QueryError, QueryOptions, Start, StartState, TimeOfContact, Window,
+    departure, time_of_contact,
 };
 
 /// The separation above s up to which bodies have not left each other for certain, in tolerances: they have where they are proven further apart
@@ -101,7 +101,8 @@ fn start_claim(
         _ => return Ok(None),
     };
     let now = Window::try_new(window.start(), window.start()).map_err(|_| Reason::Malformed)?;
-    let plain = options.with_start(Start::Report).with_mode(Mode::Accurate);
+    // What is left of a time limit is another one at each search.
+    let plain = options.with_start(Start::Report).with_mode(Mode::Accurate).with_budget(Budget::UNLIMITED);
     let found = time_of_contact(*a, *b, now, &plain).map_err(|_| Reason::Malformed)?;
     if found.contact().is_some_and(|contact| contact.start == start) {
         contact_claim(&[*a, *b], now, &plain, &found, None).map(Some)
