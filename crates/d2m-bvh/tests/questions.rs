@@ -9,7 +9,7 @@ use d2m_feature::triangle_distance;
 use d2m_motion::{
     Chain, Composed, ConstantTwist, Joint, JointKind, JointValue, Keyframes, Pose, RigidMotion, Span,
 };
-use d2m_testing::{Draw, KnuthRandom, Surface};
+use d2m_testing::{Draw, KnuthRandom, Opaque, Surface};
 use glam::{DQuat, DVec3};
 
 fn tree(surface: Surface) -> MeshTree {
@@ -230,6 +230,38 @@ fn windows_of_no_length_bodies_inside_each_other_and_budgets() {
         &ClearanceOptions::default().with_cutoff(0.5),
     );
     assert!(cut.is_ok_and(|cut| cut.lower >= 0.5 && cut.status == ClearanceStatus::Clear));
+}
+
+/// Where nothing is decided at the only time of a window, that is its span: it was clear, from there to the number before.
+#[test]
+fn a_window_of_no_length_in_which_nothing_is_decided_is_undecided() {
+    let tree = cuboid(DVec3::splat(0.5));
+    let still = ConstantTwist::REST;
+    let mut undecided = 0;
+    for time in [1.0, 0.3, 0.0, -7.0] {
+        for (place, budget) in [(0.25, 1000), (0.25, 0), (0.25, 1), (1.0, 1000), (3.0, 0), (3.0, 1000)] {
+            // So fast that the enclosures of its place are as wide as the bodies.
+            for speed in [0.0, 1e10, 1e16] {
+                let flying = ConstantTwist::REST
+                    .with_position(DVec3::X * (place - speed))
+                    .with_linear_velocity(DVec3::X * speed)
+                    .with_reference_time(time - 1.0);
+                let flying = Opaque(flying);
+                let [a, b] = [Moving::new(&tree, &still), Moving::new(&tree, &flying)];
+                let options = QueryOptions::default().with_budget(Budget::UNLIMITED.with_node_tests(budget));
+                let now = Window::try_new(time, time).unwrap();
+                let spans = contact_spans(a, b, now, &options, None).unwrap();
+                assert!(
+                    !spans.is_empty() && spans.iter().all(|span| [span.from, span.to] == [time; 2]),
+                    "{spans:?}"
+                );
+                let is_clear = spans.iter().any(|span| span.status == SpanStatus::Clear);
+                assert!(!is_clear || place > 0.5, "{time} {place} {speed:e}: {spans:?}");
+                undecided += usize::from(spans[0].status == SpanStatus::Undecided);
+            }
+        }
+    }
+    assert!(undecided > 10, "{undecided}");
 }
 
 /// A ball is a point with a radius: contact and clearance of spheres and capsules, known in closed form.

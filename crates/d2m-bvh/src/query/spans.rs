@@ -338,7 +338,7 @@ impl Search<'_> {
     /// The span from where the last one ended; joined with that if nothing else is known of it. None of no length, but in a window of none.
     fn push(&mut self, to: f64, status: SpanStatus) {
         let from = self.now;
-        if to <= from && self.walk.window.length() > 0.0 {
+        if to < from || to == from && self.walk.window.length() > 0.0 {
             return;
         }
         #[cfg(feature = "audit")]
