@@ -185,6 +185,29 @@ fn how_bodies_that_leave_stood_at_the_start_is_proven() {
     }
 }
 
+/// How fast bodies go is no part of how near they are said to come: at 1e12 a unit of time rounding explained any distance.
+#[test]
+fn fast_bodies_come_no_nearer_than_they_do() {
+    let cube = cube(1.0);
+    for speed in [1.0, 1e6, 1e9, 1e12] {
+        // Past the other one, half a unit beside it.
+        let place = DVec3::new(-0.25 * speed - 0.3, 2.5, 0.1);
+        let passing = along_x(0.0, speed).with_position(place);
+        let pair = Pair::new([&cube; 2], &passing);
+        let [a, b] = pair.bodies();
+        let honest = clearance(a, b, Window::UNIT, &ClearanceOptions::default()).unwrap();
+        assert!(honest.upper > 0.499 && pair.is_clearance(&honest), "{speed:e}: {honest:?}");
+        for nearer in [1e-9, 1e-6, 1e-3, 0.02] {
+            let mut lie = honest;
+            lie.upper -= nearer;
+            lie.lower = lie.lower.min(lie.upper - 1e-11);
+            lie.tolerance = lie.tolerance.min(1e-10);
+            lie.point_a += lie.normal * nearer;
+            assert!(!pair.is_clearance(&lie), "{speed:e} {nearer:e}: {lie:?}");
+        }
+    }
+}
+
 /// A time limit that ended a search is no limit of the search of what its answer claims.
 #[test]
 fn a_time_limit_is_none_of_the_proof() {

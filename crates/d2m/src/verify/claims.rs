@@ -180,10 +180,11 @@ pub fn clearance_claim(
         });
     }
     claims.push(Claim::Within {
-        // An upper end is that of the engine's own roundings. Bodies that meet are within the tolerance after the time of contact.
+        // An upper end is that of the engine's own roundings of two triangles at that time. Bodies that meet are within the tolerance after the
+        // time of contact.
         span: TimeSpan { from: time, to: if upper > 0.0 { time } else { window.end() } },
         distance: match answer.status {
-            _ if upper > 0.0 => upper + scale.error,
+            _ if upper > 0.0 => upper + scale.error_at_rest,
             ClearanceStatus::Contact => scale.most,
             _ => 0.0,
         },
@@ -235,7 +236,8 @@ pub fn spans_claim(
             }
             SpanStatus::Contact => {
                 // What is within the level was found with the engine's own roundings.
-                let above = span.tolerance.max(scales[0].asked) + scales[0].error.max(scales[1].error);
+                let error = scales[0].error_at_rest.max(scales[1].error_at_rest);
+                let above = span.tolerance.max(scales[0].asked) + error;
                 let near = |time: f64| within(time - resolution, time + resolution, above);
                 claims.extend([near(span.from), near(span.to)]);
                 claims.push(Claim::Often {
