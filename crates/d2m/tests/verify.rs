@@ -8,9 +8,9 @@ use d2m::motion::{IntervalPose, IntervalTwist};
 use d2m::paper::{self, SphereTree};
 use d2m::verify::{Reason, Verdict, Verifier};
 use d2m::{
-    Budget, ClearanceOptions, Composed, ConstantTwist, Contact, MeshTree, Mode, Moving, Pose, QueryOptions,
-    RigidMotion, Solid, SpanStatus, TimeOfContact, TriMesh, Twist, Window, clearance, contact_spans,
-    departure, time_of_contact,
+    Budget, ClearanceOptions, Composed, ConstantTwist, Contact, Keyframes, MeshTree, Mode, Moving, Pose,
+    QueryOptions, RigidMotion, Solid, Span, SpanStatus, TimeOfContact, TriMesh, Twist, Window, clearance,
+    contact_spans, departure, time_of_contact,
 };
 use d2m_testing::{Draw, KnuthRandom, SmallScene, Surface};
 
@@ -332,6 +332,34 @@ fn what_moves_in_one_frame_is_proven_in_few_steps() {
     let apart = TimeOfContact::Separated;
     let verdict = verifier.time_of_contact(&bodies, early, &options, &apart, STEPS);
     assert!(matches!(verdict, Verdict::Verified { .. }), "{verdict:?}");
+}
+
+/// At the end of a long way plain numbers place a body worse than its own ones do, of which the points of answers are.
+#[test]
+fn points_at_the_end_of_a_long_way_are_those_of_the_triangles() {
+    let tree = MeshTree::new(mesh(&Surface::cube(0.5)));
+    let verifier = Verifier::try_new(tree.mesh(), tree.mesh()).unwrap();
+    let mut random = KnuthRandom(3);
+    for round in 0..60 {
+        let far = random.direction() * 10f64.powf(2.0 + 8.0 * random.unit());
+        let place = random.direction() * 2.5;
+        let pose = |translation, rotation| Pose { translation, rotation, at: DVec3::ZERO };
+        let keys = [
+            (0.0, pose(place + far, random.moderate_turn().normalize())),
+            (0.7, pose(place, random.moderate_turn().normalize())),
+        ];
+        let coming = Keyframes::try_new(&keys, Span::Linear).unwrap();
+        let bodies =
+            [&ConstantTwist::REST as &dyn RigidMotion, &coming].map(|motion| Moving::new(&tree, motion));
+        let ([a, b], wanted) = (bodies, ClearanceOptions::default());
+        let now = Window::try_new(0.7, 0.7).unwrap();
+        let mut answer = clearance(a, b, now, &wanted).unwrap();
+        let verdict = verifier.clearance(&bodies, now, &wanted, &answer, STEPS);
+        assert!(matches!(verdict, Verdict::Verified { .. }), "{round}: {answer:?} {verdict:?}");
+        answer.point_b += DVec3::splat(1e-3);
+        let verdict = verifier.clearance(&bodies, now, &wanted, &answer, STEPS);
+        assert!(matches!(verdict, Verdict::Unproven { reason: Reason::Witness, .. }), "{round}: {verdict:?}");
+    }
 }
 
 /// Squares of lengths below 1e-162 are no numbers: the points of rounded bodies were those of their meshes there, and their normal was none.

@@ -2,7 +2,8 @@
 
 use super::Reason;
 use crate::{Contact, Moving, Pose, QueryOptions, Twist, Window};
-use d2m_motion::length;
+use d2m_motion::{CertifiedState, length};
+use glam::DMat3;
 
 /// δ if none is given, as a part of the larger body.
 const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -37,7 +38,7 @@ pub(super) struct Scale {
     pub(super) raised: f64,
     /// γ, and what the enclosures of both poses at that time say of it: how far a distance of two triangles may be off.
     pub(super) error: f64,
-    /// The same of points in the coordinates of the world.
+    /// The same of points in the coordinates of the world, of bodies that are placed in plain numbers.
     pub(super) world_error: f64,
     /// The same of a distance of two triangles at rest at that time: how far the bodies go in the window is no part of it.
     pub(super) error_at_rest: f64,
@@ -64,11 +65,18 @@ impl Scale {
         // Distances of bodies with radii are those of their meshes less both.
         let radii = 8.0 * f64::EPSILON * (bodies[0].radius + bodies[1].radius);
         let near = reaches[0] + reaches[1] + apart(&states[1]);
-        let enclosed = |body: &Moving<'_>| {
-            let state = body.motion.enclose_state_about(time, states[1][0].0.translation);
-            state.position_radius + state.rotation_radius * near
+        let origin = states[1][0].0.translation;
+        let enclosed = bodies.map(|body| body.motion.enclose_state_about(time, origin));
+        let radius = |state: &CertifiedState| state.position_radius + state.rotation_radius * near;
+        let places = radius(&enclosed[0]) + radius(&enclosed[1]);
+        // How far plain numbers place the bodies from where the enclosures do.
+        let plain = |k: usize| {
+            let (pose, state) = (states[1][k].0, &enclosed[k]);
+            let turn = DMat3::from_quat(pose.rotation.normalize()) - state.rotation;
+            let turned = length(turn.x_axis) + length(turn.y_axis) + length(turn.z_axis);
+            let off = length(pose.translation - origin - state.position) + turned * near;
+            if pose.at == state.at && off.is_finite() { off } else { 0.0 }
         };
-        let places = enclosed(&bodies[0]) + enclosed(&bodies[1]);
         let error = ERROR * lengths + BOXES * places;
         let far = states[1].each_ref().map(|(pose, _)| length(pose.translation));
         let raised = ROUNDED_PLACES * places.min(PLACES * (far[0] + far[1] + reaches[0] + reaches[1]));
@@ -77,7 +85,7 @@ impl Scale {
             most: (asked * ROUNDED_UP + radii).max(2.0 * ERROR * lengths).max(raised).max(clock).min(LARGEST),
             raised,
             error,
-            world_error: error + ERROR * far[0].max(far[1]),
+            world_error: error + ERROR * far[0].max(far[1]) + plain(0) + plain(1),
             error_at_rest: ERROR * near + BOXES * places,
         }
     }
