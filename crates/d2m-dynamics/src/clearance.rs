@@ -31,6 +31,10 @@ use glam::{DMat3, DQuat, DVec3};
 /// relative error 2⁻⁵³ each, doubled.
 pub(crate) const ROUNDING: f64 = 128.0 * f64::EPSILON;
 
+/// What flights lose where they join, of the same sizes: the time since its flight began, its way and its place are rounded once each, of relative
+/// size 2⁻⁵³, and its turn by a few of these. What stays further apart in its flights, also does so where the next begin.
+pub(crate) const JOIN: f64 = 4.0 * f64::EPSILON;
+
 /// Vertices of both bodies together up to which all of them are placed: that many cost a tenth of a query.
 const FEW: usize = 64;
 
@@ -39,6 +43,12 @@ impl RigidBody {
     pub(crate) fn sphere(&self) -> MovingSphere {
         let (center, velocity) = (self.flight.position(), self.flight.linear_velocity());
         MovingSphere { center, velocity, radius: self.radius }
+    }
+
+    /// How far it reaches from the origin at most, from `now` on for a time `tau`, by whatever way.
+    pub(crate) fn extent(&self, now: f64, tau: f64) -> f64 {
+        let way = (now - self.flight.reference_time()).abs() + tau;
+        self.flight.position().length() + self.surface_speed() * way + self.radius
     }
 
     /// The same, for times since this one.
@@ -50,7 +60,8 @@ impl RigidBody {
 /// Are two bodies proven further apart than `gap` in their present flights, from `time` to `end`, by the spheres about their
 /// centers alone? No when a number is not finite.
 pub(crate) fn are_spheres_apart(a: &RigidBody, b: &RigidBody, time: f64, end: f64, gap: f64) -> bool {
-    a.sphere_at(time).stays_apart(&b.sphere_at(time), gap, end - time)
+    let least = gap.max(JOIN * sizes([a, b], time, end - time));
+    a.sphere_at(time).stays_apart(&b.sphere_at(time), least, end - time)
 }
 
 /// Two bodies where their flights have them at a time.
@@ -103,13 +114,7 @@ pub(crate) fn approach([a, b]: [&RigidBody; 2]) -> f64 {
 
 /// The lengths that enter a bound.
 pub(crate) fn sizes(bodies: [&RigidBody; 2], now: f64, tau: f64) -> f64 {
-    let size = |body: &RigidBody| {
-        let way = (now - body.flight.reference_time()).abs() + tau;
-        let speed =
-            body.flight.linear_velocity().length() + body.flight.angular_velocity().length() * body.radius;
-        body.flight.position().length() + speed * way + body.radius
-    };
-    bodies.into_iter().map(size).sum()
+    bodies.into_iter().map(|body| body.extent(now, tau)).sum()
 }
 
 /// May all of their vertices be placed?

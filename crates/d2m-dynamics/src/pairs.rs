@@ -1,6 +1,8 @@
 //! What is known of pairs of bodies, and the queries about them.
 
-use crate::clearance::{Clearance, Placed, apart_along_until, approach, bound_along, have_few_vertices};
+use crate::clearance::{
+    Clearance, JOIN, Placed, apart_along_until, approach, bound_along, have_few_vertices, sizes,
+};
 #[cfg(feature = "audit")]
 use crate::concluded::conclude;
 use crate::contact::ContactPoint;
@@ -24,13 +26,9 @@ const STOP: f64 = 0.5;
 const HALF: f64 = 0.5;
 /// The tolerance of a query: this part of the separation. A flight then ends between it and 1.21 times it.
 const SLACK: f64 = 0.0625;
-/// A separation below this part of the gap, 2⁻³⁰, is not halved further: the pair is held. For a gap of a thousandth of its bodies a
-/// query's tolerance, a sixteenth of the separation, is then 2⁻⁴⁴ of them, which the rounding of placed points (fewer than
-/// 40 operations of 2⁻⁵³ each) reaches with the next halvings.
-const LEAST: f64 = 1.0 / (1u64 << 30) as f64;
-/// Of a gap that is wider than this part of its bodies only so much counts for that: bodies that touched at the start have 2⁻³⁶ of their size at first,
-/// whatever the gap is.
-const WIDE: f64 = 1.0 / 1024.0;
+/// Of the radius of the larger body, the separation below which a pair is held, 2⁻³⁸; the least tolerance is a quarter of it. The rounding of placed
+/// points (fewer than 40 operations of 2⁻⁵³ each) shows in the next halvings: of bodies that graze each other some queries then take a million node tests.
+const LEAST: f64 = 1.0 / (1u64 << 38) as f64;
 
 /// Features of a pair from which on fewer are sought, and up to which more are.
 const MANY: usize = 128;
@@ -181,18 +179,19 @@ pub(crate) fn fly(
     node_tests: u64,
     pair: &mut Pair,
 ) -> Result<Outcome, QueryError> {
-    let until = proven_clear_until(a, b, window, pair)?;
+    let lost = JOIN * sizes([a, b], window.start(), window.length());
+    let least = lost.max(LEAST * a.radius.max(b.radius));
+    let apart = pair.separation().max(lost);
+    let until = proven_clear_until(a, b, window, pair, apart * (1.0 + SLACK))?;
     #[cfg(feature = "audit")]
     if until > window.start() {
-        let apart = pair.separation() * (1.0 + SLACK);
-        conclude(Place::DynamicsClearance, [a, b], [window.start(), until], apart);
+        conclude(Place::DynamicsClearance, [a, b], [window.start(), until], apart * (1.0 + SLACK));
     }
     if until >= window.end() {
         return Ok(Outcome::Clear);
     }
     let window = Window::try_new(until, window.end())?;
-    let mut separation = pair.separation();
-    let least = LEAST * pair.gap.min(WIDE * size([a, b]));
+    let mut separation = apart.max(least);
     while separation >= least {
         match first_meeting([a, b], window, separation, node_tests, &mut pair.cache)? {
             TimeOfContact::Separated => return Ok(Outcome::Clear),
@@ -219,10 +218,11 @@ fn first_meeting(
     node_tests: u64,
     cache: &mut PairCache,
 ) -> Result<TimeOfContact, QueryError> {
+    let radius = bodies[0].radius.max(bodies[1].radius);
     let options = QueryOptions::default()
         .with_solid(solid_of(bodies[0], bodies[1]))
         .with_min_separation(separation)
-        .with_tolerance(SLACK * separation)
+        .with_tolerance((SLACK * separation).max(0.25 * LEAST * radius))
         .with_budget(Budget::UNLIMITED.with_node_tests(node_tests));
     let [one, two] = bodies.map(|body| Moving::new(&*body.tree, &body.flight).with_radius(body.rounding));
     time_of_contact_with(one, two, window, &options, cache)
@@ -254,14 +254,12 @@ fn proven_clear_until(
     b: &RigidBody,
     window: Window,
     pair: &mut Pair,
+    needed: f64,
 ) -> Result<f64, QueryError> {
     let (now, length) = (window.start(), window.length());
-    let needed = pair.separation() * (1.0 + SLACK);
     let placed = Placed::at([a, b], now);
-    if pair.clearance.is_some_and(|known| known.bound(&placed, length) > needed) {
-        return Ok(window.end());
-    }
-    if bound_from_centers(&placed, length) > needed {
+    let is_kept = pair.clearance.is_some_and(|known| known.bound(&placed, length) > needed);
+    if is_kept || bound_from_centers(&placed, length) > needed {
         return Ok(window.end());
     }
     let spins = [a, b].map(|body| body.flight.angular_velocity());
@@ -349,4 +347,106 @@ pub(crate) fn held_at(
 fn met(contact: &Contact) -> Outcome {
     let (lo, hi) = (contact.time_lo, contact.time_hi);
     Outcome::Meets { lo, hi, normal: contact.normal, closing: contact.closing_speed }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Body;
+    use crate::clearance::are_spheres_apart;
+    use crate::drawn::{draw, vector};
+    use crate::velocity::Velocity;
+    use d2m_bvh::MeshTree;
+    use d2m_mesh::Faces;
+    use glam::DQuat;
+    use std::sync::Arc;
+
+    /// A cube of half side 1e-3, in its flight since time 1.
+    fn flying(place: DVec3, velocity: Velocity) -> RigidBody {
+        let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=1e-3&y=1e-3&z=1e-3").unwrap()));
+        let described = Body::new("", Arc::clone(&tree)).with_position(place);
+        let mut body = RigidBody::try_new(&described, Arc::new(Faces::new(tree.mesh())), 1.0).unwrap();
+        body.fly(velocity, f64::INFINITY);
+        body
+    }
+
+    /// Cubes that come together from a distance, where the pair keeps a gap that they are closer than.
+    fn met(a: &RigidBody, b: &RigidBody, nearest: f64, node_tests: u64) -> Outcome {
+        let mut pair = Pair { nearest: Some(nearest), ..Pair::new(1e-9) };
+        fly(a, b, Window::try_new(1.0, 2.0).unwrap(), node_tests, &mut pair).unwrap()
+    }
+
+    /// Far from the origin flights end as long as rounding where the next one begins leaves some of the distance: what is closer is held.
+    #[test]
+    fn flights_end_further_apart_than_rounding_moves_bodies() {
+        let (mut ended, mut held) = (0, 0);
+        for k in 0..100 {
+            // In roundings of places at 8: 2⁻⁵⁰.
+            let (ulps, speed) = (f64::from(k), DVec3::X * 0.3e-15);
+            let distance = 8.0 * f64::EPSILON * ulps;
+            let still = flying(DVec3::splat(8.0), Velocity::default());
+            let from = DVec3::new(8.0 + 2e-3 + distance, 8.0, 8.0);
+            let coming =
+                flying(from, Velocity { linear: -speed * (ulps + 1.0) * 7.0, ..Velocity::default() });
+            match met(&still, &coming, from.x - 8.0 - 2e-3, 1 << 22) {
+                Outcome::Meets { lo, .. } => {
+                    let mut there = coming.clone();
+                    there.advance(lo, DVec3::ZERO);
+                    assert!(there.position.x - 8.0 > 2e-3, "{ulps}");
+                    ended += 1;
+                }
+                Outcome::Stuck => held += 1,
+                other => panic!("{ulps}: {other:?}"),
+            }
+        }
+
+        assert!(ended > 40 && held > 10, "{ended} {held}");
+    }
+
+    /// Where little of a gap is left a query needs thousands of node tests, not millions.
+    #[test]
+    fn what_is_hardly_apart_is_queried_in_no_time() {
+        let state = &mut 1;
+        let (mut ended, mut held) = (0, 0);
+        for k in 0..400 {
+            let mut tumbling = |place: DVec3| {
+                let turn = DQuat::from_xyzw(draw(state), draw(state), draw(state), draw(state));
+                let velocity = Velocity { linear: vector(state) * 1e-3, angular: vector(state) * 9.0 };
+                RigidBody { orientation: turn.normalize(), ..flying(place, velocity) }
+            };
+            let [mut still, mut coming] = [DVec3::ZERO, DVec3::X * 4e-3].map(&mut tumbling);
+            for body in [&mut still, &mut coming] {
+                body.fly(body.present_velocity(), f64::INFINITY);
+            }
+            let poses = [&still, &coming].map(|body| body.pose_at(1.0));
+            let found = distance_of([&still, &coming], poses, f64::INFINITY, &mut PairCache::new());
+            let (found, nearest) = (found.unwrap().unwrap(), 4e-15 * 2.0f64.powi(k % 8));
+            coming.position -= found.normal * (found.lower - nearest);
+            // They slide along each other, and close in slowly.
+            let at = |body: &RigidBody, point: DVec3| {
+                let Velocity { linear, angular } = body.present_velocity();
+                linear + angular.cross(point - body.pose_at(1.0).translation)
+            };
+            let closing = (at(&coming, found.point_b) - at(&still, found.point_a)).dot(found.normal);
+            let Velocity { linear, angular } = coming.present_velocity();
+            coming.fly(Velocity { linear: linear - found.normal * (closing + 1e-8), angular }, f64::INFINITY);
+            match met(&still, &coming, nearest, 1 << 12) {
+                Outcome::Meets { .. } => ended += 1,
+                Outcome::Stuck => held += 1,
+                Outcome::ClearUntil(until) => panic!("{k}: {until}"),
+                Outcome::Clear => {}
+            }
+        }
+        assert!(ended > 100 && held > 10, "{ended} {held}");
+    }
+
+    /// Spheres that are apart by less than rounding moves bodies on their common way leave out no pair, whatever the gap is.
+    #[test]
+    fn what_rounding_could_move_together_is_queried() {
+        let fast = Velocity { linear: DVec3::Y * 1e5, ..Velocity::default() };
+        let one = flying(DVec3::ZERO, fast);
+        let two = |apart: f64| flying(DVec3::X * (2.0 * one.radius + apart), fast);
+        assert!(!are_spheres_apart(&one, &two(1e-11), 1.0, 2.0, 1e-300));
+        assert!(are_spheres_apart(&one, &two(1e-9), 1.0, 2.0, 1e-300));
+    }
 }
