@@ -43,8 +43,8 @@ const LAST: f64 = 1.0 / 64.0;
 const LASTING: f64 = 1.0 / 16.0;
 /// The part of what restores the gap that counts beforehand: where the law is not obeyed, nothing may be restored.
 const RESTORED: f64 = 1.0 / 16.0;
-/// How strong motors are where they stall.
-const STRONG: f64 = 16.0;
+/// How strong motors are where they stall, and then where no velocities are found with that: too strong for what is light among heavy bodies.
+const STRENGTHS: [f64; 4] = [16.0, 1.0 / 64.0, 1.0 / 65_536.0, 1.0 / 67_108_864.0];
 /// Is the turning of jointed bodies braked, where it is faster than flights?
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Brakes {
@@ -266,7 +266,7 @@ impl Problem<'_> {
     }
 
     /// No velocities obey contacts and a motor without a bound on its force that leads into them. Where none are found motors stall: they push with
-    /// [`STRONG`] times, at most, what stops all bodies there are, with what forces add in a step, and brings them to a slow speed.
+    /// [`STRENGTHS`] times, at most, what stops all bodies there are, with what forces add in a step, and brings them to a slow speed.
     fn stall_motors(&self, system: &mut System, found: &mut Found, accuracy: Accuracy) {
         let rows = || found.contacts.iter().enumerate().filter_map(|(k, c)| Some((k, c, c.row?)));
         if rows().count() == found.contacts.len() || !rows().any(|(.., row)| row.is_motor) {
@@ -280,16 +280,22 @@ impl Problem<'_> {
                 + (state.force.length() + state.torque.length() / state.radius) * self.options.step
         };
         let (mass, pushes) = moved().fold((0.0, 0.0), |(mass, pushes), s| (mass + s.mass, pushes + push(s)));
-        for (k, contact, row) in rows().filter(|(.., row)| row.is_motor) {
-            let reach = moved().map(|s| s.position.distance(contact.point) + s.radius).fold(0.0, f64::max);
-            let arm = if row.is_angular { reach } else { 1.0 };
-            system.bound(k, STRONG * arm * (pushes + mass * (arm * row.target.abs()).min(accuracy.slow)));
-        }
-        let (residual, before) = (found.residual, system.present());
-        found.residual = system.solve(&found.pushing, accuracy, Start::Sticking);
-        if found.residual > residual {
-            found.residual = residual;
-            system.take_back(before);
+        for strength in STRENGTHS {
+            for (k, contact, row) in rows().filter(|(.., row)| row.is_motor) {
+                let reach = || moved().map(|s| s.position.distance(contact.point) + s.radius);
+                let arm = if row.is_angular { reach().fold(0.0, f64::max) } else { 1.0 };
+                system
+                    .bound(k, strength * arm * (pushes + mass * (arm * row.target.abs()).min(accuracy.slow)));
+            }
+            let (residual, before) = (found.residual, system.present());
+            found.residual = system.solve(&found.pushing, accuracy, Start::Sticking);
+            if found.residual <= system.tolerance(accuracy) {
+                return;
+            }
+            if found.residual > residual {
+                found.residual = residual;
+                system.take_back(before);
+            }
         }
     }
 

@@ -198,8 +198,7 @@ pub(crate) fn fly(
             TimeOfContact::Undecided { clear_until } => return Ok(Outcome::ClearUntil(clear_until)),
             TimeOfContact::Contact(contact) => match contact.start {
                 StartState::Apart => {
-                    let wider =
-                        met_with_room([a, b], window.start(), &contact, node_tests, pair, separation)?;
+                    let wider = met_with_room([a, b], window, &contact, node_tests, pair, separation)?;
                     return Ok(met(&wider.unwrap_or(contact)));
                 }
                 StartState::Touching => separation *= HALF,
@@ -232,7 +231,7 @@ fn first_meeting(
 /// flights end where others do. `None`: they have not parted so far.
 fn met_with_room(
     bodies: [&RigidBody; 2],
-    start: f64,
+    window: Window,
     contact: &Contact,
     node_tests: u64,
     pair: &mut Pair,
@@ -242,7 +241,7 @@ fn met_with_room(
     if separation >= wide {
         return Ok(None);
     }
-    let rest = Window::try_new(start + 0.5 * (contact.time_lo - start), contact.time_lo)?;
+    let rest = Window::try_new(0.5 * (window.start() + contact.time_lo), contact.time_lo)?;
     let found = first_meeting(bodies, rest, wide, node_tests, &mut pair.cache)?;
     Ok(found.contact().filter(|found| found.start == StartState::Apart).copied())
 }
@@ -310,8 +309,7 @@ pub(crate) fn distance_of(
         .with_solid(solid_of(a, b))
         .with_cutoff(cutoff)
         .with_first(cache.triangles());
-    let posed = [Posed::new(&a.tree, poses[0]), Posed::new(&b.tree, poses[1])];
-    let found = distance_within(posed[0], posed[1], &options)?;
+    let found = distance_within(Posed::new(&a.tree, poses[0]), Posed::new(&b.tree, poses[1]), &options)?;
     if let Some(found) = &found {
         cache.remember([found.triangle_a, found.triangle_b]);
     }

@@ -1,8 +1,11 @@
 //! Joints that close chains: where these have no way to move they stand, where they have one they go it.
 
+mod ground;
+
 use d2m_bvh::MeshTree;
 use d2m_dynamics::{Body, BodyId, Joint, JointKind, Mass, Motor, MotorTarget, Simulation, SimulationOptions};
 use glam::{DQuat, DVec3};
+use ground::{floor, tree};
 use std::sync::Arc;
 
 /// Bars of one kilogram from each of these points to the next one, on pins along z; the first and the last end on pins of the world, unless that is one
@@ -236,4 +239,36 @@ fn arms_carry_heavy_loads_in_as_many_flights() {
     };
     let [light, heavy] = [1e2, 1e5].map(flights);
     assert!(heavy <= light + light / 4, "{heavy} {light}");
+}
+
+/// An arm whose motors, without a bound on their force, press on boxes and the floor with a link that weighs a billionth of the others: with all that
+/// would stop those no velocities are found, and with less of it they stop there as others do.
+#[test]
+fn motors_of_light_links_stop_at_what_is_in_their_way() {
+    let (bar, stone) = (tree("box?x=0.4&y=0.1&z=0.1"), tree("box?x=0.3&y=0.2&z=0.3"));
+    let mut simulation = Simulation::new(SimulationOptions::default().with_sleeping(false)).unwrap();
+    let floor = floor().with_friction(0.3).with_restitution(1.0);
+    simulation.add(&floor).unwrap();
+    let body = |shape: &Arc<MeshTree>, mass: f64, x: f64, y: f64| {
+        let body = Body::new("body", Arc::clone(shape)).with_friction(0.3).with_restitution(1.0);
+        body.with_mass(Mass::Total(mass)).with_position(DVec3::new(x, y, 0.0))
+    };
+    let mut last = None;
+    for (mass, spin, x) in [(2.3, -0.2, 0.0), (9.3e4, -1.0, 0.9), (5.5e-6, -0.2, 1.8)] {
+        let link = simulation.add(&body(&bar, mass, x, 1.0)).unwrap();
+        let (a, b) = last.map_or((link, None), |last| (last, Some(link)));
+        let pin = Joint::new(JointKind::Revolute, a, b, DVec3::new(x - 0.45, 1.0, 0.0));
+        simulation.add_joint(&pin.with_motor(Motor::new(MotorTarget::Velocity(spin)))).unwrap();
+        last = Some(link);
+    }
+    for (mass, x) in [(0.17, 0.5), (5e4, 1.5)] {
+        simulation.add(&body(&stone, mass, x, 0.202)).unwrap();
+    }
+    let mut most = 0;
+    while simulation.time() < 1.0 {
+        let report = simulation.step().unwrap();
+        assert!(report.segments.iter().all(|segment| segment.skipped == 0.0));
+        most = most.max(report.segments.len());
+        assert!(most < 16, "{}: {most}", simulation.time());
+    }
 }
