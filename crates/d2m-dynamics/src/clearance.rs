@@ -31,9 +31,9 @@ use glam::{DMat3, DQuat, DVec3};
 /// relative error 2⁻⁵³ each, doubled.
 pub(crate) const ROUNDING: f64 = 128.0 * f64::EPSILON;
 
-/// What flights lose where they join, of the same sizes: the time since its flight began, its way and its place are rounded once each, of relative
-/// size 2⁻⁵³, and its turn by a few of these. What stays further apart in its flights, also does so where the next begin.
-pub(crate) const JOIN: f64 = 4.0 * f64::EPSILON;
+/// What flights lose where they join, of the same sizes, 2⁻⁴⁸: of relative size 2⁻⁵³ each, the rounding of the time since its flight began, of its way and
+/// its place, and fewer than 24 of its turn. What stays further apart in its flights does so where the next begin, too.
+pub(crate) const JOIN: f64 = 16.0 * f64::EPSILON;
 
 /// Vertices of both bodies together up to which all of them are placed: that many cost a tenth of a query.
 const FEW: usize = 64;
