@@ -3,8 +3,7 @@
 use crate::contact::ContactPoint;
 use glam::DVec3;
 
-/// Rounds over the contacts of a pair, four of which share a push that has moved among them to a hundredth; and more as long as each leaves less
-/// than a part of what is missing, squared, which it does not where a law forbids it.
+/// Rounds over the contacts of a pair, and more as long as each leaves less than a part of what is missing, squared: where no law forbids it.
 const ROUNDS: u32 = 8;
 const GAINED: f64 = 0.9;
 /// The part of a push that need not be shared out better: under twenty others a body is pushed off by less than quiet ones move.
@@ -18,8 +17,7 @@ pub(crate) fn inherit(contacts: &mut [ContactPoint], old: &[ContactPoint]) {
     let mut is_new = vec![true; contacts.len()];
     let mut gone = Vec::new();
     for before in old {
-        let is_same = |contact: &ContactPoint| contact.feature == before.feature;
-        match contacts.iter().position(is_same) {
+        match contacts.iter().position(|contact| contact.feature == before.feature) {
             Some(place) => {
                 add_to(&mut contacts[place], before.total());
                 is_new[place] = false;

@@ -62,7 +62,6 @@ pub(crate) fn measure(
     }
     // In the order of their distances.
     let (apart, normal) = (wide.first().map_or(margin, |p| p.distance), wide.first().map(|p| p.normal));
-    let wide = one_of_each(&wide);
     // The points of meshes with radii are far apart, so the directions between them are as exact as those of faces.
     let flatten = |p: &Proximity| {
         if is_round { None } else { flattened(p, [a, b], [&posed_a.pose, &posed_b.pose], gap) }
@@ -114,20 +113,6 @@ pub(crate) fn measure(
     all.extend(wide.iter().filter(is_tight));
     let contacts = all.iter().filter(|p| p.normal.is_normalized()).map(contact).collect();
     Ok(Measured { contacts, features: wide.len(), apart, normal })
-}
-
-/// A vertex over the rim of a face is near the face and, within the slack, its edge. Both have one name, by which the next step finds impulses again:
-/// the one that is least tilted stays.
-fn one_of_each(found: &[Proximity]) -> Vec<Proximity> {
-    let mut each: Vec<Proximity> = Vec::new();
-    for near in found {
-        match each.iter_mut().find(|other| other.feature == near.feature) {
-            Some(other) if near.tilt < other.tilt => *other = *near,
-            Some(_) => {}
-            None => each.push(*near),
-        }
-    }
-    each
 }
 
 /// Beside the rim of a face that lies on another one normals are askew, and where friction does not hold them such contacts give way aside: what stands
@@ -237,33 +222,6 @@ mod tests {
             (1..20).map(|k| 0.02 * f64::from(k)).map(|turn| [0.0, 0.5].map(|f| upright(turn, f))).collect();
         assert!(counts.iter().all(|[free, held]| *free >= 4 && free >= held), "{counts:?}");
         assert!(counts.iter().any(|[_, held]| *held < 4), "{counts:?}");
-    }
-
-    /// Of a cube that lies half on another one corners lie over a face and its rim: each has one contact, and its impulse is found again.
-    #[test]
-    fn a_corner_over_a_rim_is_one_contact() {
-        let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()));
-        let faces = Arc::new(Faces::new(tree.mesh()));
-        let gap = 1e-3;
-        let cube = |place: DVec3, turn: DQuat| {
-            let body = Body::new("", Arc::clone(&tree)).with_position(place).with_orientation(turn);
-            RigidBody::try_new(&body, Arc::clone(&faces), 0.0).unwrap()
-        };
-        let material = Material { restitution: 0.0, friction: 0.5 };
-        let mut twins = 0;
-        for k in -9..10 {
-            // Rims lie over each other to a millionth of the gap.
-            let turn = DQuat::from_rotation_x(1e-10 * f64::from(k));
-            let bodies = [cube(DVec3::ZERO, DQuat::IDENTITY), cube(DVec3::new(0.525, 1.0 + gap, 0.0), turn)];
-            let found = measure(&bodies, (0, 1), 0.0, AROUND * gap, gap, material, &[]).unwrap();
-            let posed = bodies.each_ref().map(|body| body.posed_at(0.0));
-            let options = ProximityOptions::new(AROUND * gap).with_cone_slack(TILT);
-            twins += proximities_with(posed[0], posed[1], &options).unwrap().len() - found.features;
-            let is_double =
-                |c: &ContactPoint| found.contacts.iter().filter(|d| d.feature == c.feature).count() > 1;
-            assert!(found.contacts.len() >= 4 && !found.contacts.iter().any(is_double), "{k}: {found:?}");
-        }
-        assert!(twins > 0);
     }
 
     /// Two plates that lie on each other turned by 40 degrees: eight corners, of which four are contacts, now these and now those by rounding.

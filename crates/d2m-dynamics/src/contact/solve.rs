@@ -16,8 +16,7 @@ const COUPLE: usize = 4;
 const FEW: usize = 20;
 /// And up to which what is jammed may stick as it comes to rest.
 const SOME: usize = 64;
-/// Contacts up to which solutions are exact where bodies are about to rest: what sweeps leave at each level of a pile adds up to its top, is
-/// lifted where the gap is restored, and never rests.
+/// Contacts up to which solutions are exact where bodies are about to rest: what sweeps leave at each level of a pile adds up to its top.
 const SETTLING: usize = 1 << 14;
 /// Ratio of masses beyond which sweeps converge too slowly.
 const MOST_RATIO: f64 = 30.0;
@@ -79,8 +78,7 @@ impl System {
                     system.sweep_until(targets, accuracy, Pace::Conjugate, FIRST)
                 });
             }
-            let rests = self.rests(accuracy);
-            if moved > COUPLE && !rests && !could_stick && !self.is_long() {
+            if moved > COUPLE && !self.is_calm(accuracy) && !could_stick && !self.is_long() {
                 if residual <= self.enough(accuracy).max(LEFT_OVER * self.swept(accuracy)) {
                     return residual;
                 }
@@ -139,9 +137,8 @@ impl System {
 
     /// What need not be solved any better.
     pub(super) fn enough(&self, accuracy: Accuracy) -> f64 {
-        let tolerance = self.tolerance(accuracy);
-        let moved = self.moved();
-        let is_exact = self.has_joints || self.rests(accuracy);
+        let (tolerance, moved) = (self.tolerance(accuracy), self.moved());
+        let is_exact = self.has_joints || self.is_calm(accuracy);
         if is_exact || moved <= COUPLE && !accuracy.in_crowd() {
             self.aim(accuracy)
         } else if self.is_long() || moved <= FEW && !accuracy.in_crowd() {
@@ -163,14 +160,10 @@ impl System {
         if may_sweep { (SWEPT * accuracy.slow).min(OF_SPEED * self.mean_speed()) } else { 0.0 }
     }
 
-    /// Are the bodies about to rest, and so few that they are solved exactly?
-    fn rests(&self, accuracy: Accuracy) -> bool {
-        self.blocks.len() <= SETTLING && self.is_calm(accuracy)
-    }
-
-    /// Are the bodies about to rest, all that contacts connect?
+    /// Are the bodies about to rest, all that contacts connect, and not too many to be solved exactly?
     fn is_calm(&self, accuracy: Accuracy) -> bool {
-        accuracy.company != Company::Heap && self.mean_speed() <= CALM * accuracy.slow
+        let is_small = accuracy.company != Company::Heap && self.blocks.len() <= SETTLING;
+        is_small && self.mean_speed() <= CALM * accuracy.slow
     }
 
     /// Does something slide so slowly that it might as well stick, where bodies are jammed? What follows a motion may take along what it

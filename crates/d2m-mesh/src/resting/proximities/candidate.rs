@@ -33,17 +33,21 @@ pub(super) struct Candidate {
 impl Candidate {
     /// What decides between twins, and orders answers of equal distance.
     fn rank(&self) -> (u8, [u32; 6]) {
-        let ids = match self.feature {
+        (self.dimension, self.name())
+    }
+
+    /// By which the pair of features is known.
+    fn name(&self) -> [u32; 6] {
+        match self.feature {
             FeaturePair::VertexFace { vertex, face } => [0, vertex, 0, face, 0, 0],
             FeaturePair::FaceVertex { face, vertex } => [1, face, 0, vertex, 0, 0],
             FeaturePair::EdgeEdge { edge_a, edge_b } => [2, edge_a[0], edge_a[1], edge_b[0], edge_b[1], 0],
-        };
-        (self.dimension, ids)
+        }
     }
 }
 
-/// Drops all but one of the candidates whose points are within `tolerance` of each other on both bodies, and sorts by
-/// distance.
+/// Drops all but one of the candidates whose points are within `tolerance` of each other on both bodies, and all but the least tilted of those
+/// of one name, and sorts by distance.
 pub(super) fn without_twins(mut found: Vec<Candidate>, tolerance: f64) -> Vec<Candidate> {
     // Sorted along a direction that planes and edges of models are rarely perpendicular to, twins are close in the list.
     let key = |c: &Candidate| SWEEP.dot(c.points[0]);
@@ -72,6 +76,12 @@ pub(super) fn without_twins(mut found: Vec<Candidate>, tolerance: f64) -> Vec<Ca
     }
     let mut index = 0..;
     found.retain(|_| !index.next().is_some_and(|i: usize| dropped[i]));
+    // A vertex over the rim of a face is close to the face and, within the slack of the cones, to its edge, which is named as the face is.
+    let tilt =
+        |a: &Candidate, b: &Candidate| a.tilt.total_cmp(&b.tilt).then(a.distance.total_cmp(&b.distance));
+    found
+        .sort_by(|a, b| a.name().cmp(&b.name()).then_with(|| tilt(a, b)).then(a.dimension.cmp(&b.dimension)));
+    found.dedup_by(|other, least| other.name() == least.name());
     found.sort_by(|a, b| a.distance.total_cmp(&b.distance).then_with(|| a.rank().cmp(&b.rank())));
     found
 }

@@ -115,7 +115,7 @@ impl ProximityOptions {
 /// Every locally closest pair of features of two bodies at rest within `margin`, ordered by distance.
 ///
 /// Promise: complete with respect to rounding. Each pair of points p of A and q of B, |p − q| ≤ `margin`, whose direction
-/// is in both normal cones is found, once, whichever triangles hold it; what is found besides is locally closest up to
+/// is in both normal cones is found, once, whichever triangles hold it, and each pair of features once; what is found besides is locally closest up to
 /// the rounding of the poses. Where faces or edges are parallel, the places of equal distance are
 /// represented by the vertices over faces and by the crossings of edges among them, so the corners of the patch of
 /// contact are all there. Only surfaces count: both sides of a face are outside. Bodies whose radius is below 2⁻⁵¹ of the

@@ -4,6 +4,7 @@ use super::*;
 use crate::{MeshTree, TriMesh};
 use d2m_motion::Pose;
 use d2m_testing::{Draw, KnuthRandom, Surface};
+use glam::DQuat;
 
 /// How far two computations of one point may be apart: coordinates below 10 are rounded to 1e-15 a few times, and where two edges
 /// cross at a small angle the point is known less well by the inverse of its sine.
@@ -300,6 +301,25 @@ fn tilts_tell_exact_cones_from_wide_ones() {
         tilted += wide.len() - straight.len();
     }
     assert!(tilted > 100, "{tilted}");
+}
+
+/// Of a cube that lies half on another one corners lie over a face and its rim, which wide cones let in as well: both have one name.
+#[test]
+fn a_corner_over_a_rim_is_found_once() {
+    let cube = MeshTree::new(cuboid(DVec3::splat(0.5)));
+    for k in -20..=20 {
+        // Rims lie over each other up to a part of the distance.
+        let turn = DQuat::from_rotation_x(1e-10 * f64::from(k));
+        let pose = Pose { rotation: turn, translation: DVec3::new(0.525, 1.001, 0.0), ..Pose::IDENTITY };
+        let options = ProximityOptions::new(1.5e-3).with_cone_slack(0.1);
+        let near = proximities_with(crate::Posed::at_rest(&cube), crate::Posed::new(&cube, pose), &options);
+        let near = near.unwrap();
+        let is_double = |p: &Proximity| near.iter().filter(|other| other.feature == p.feature).count() > 1;
+        assert!(near.len() >= 4 && !near.iter().any(is_double), "{k}: {near:?}");
+        let corner = |p: &&Proximity| (p.point_b - pose.translation).abs().max_element() > 0.499_999;
+        let straight = near.iter().filter(corner).filter(|p| p.tilt < 1e-12).count();
+        assert!(straight >= 2, "{k}: {near:?}");
+    }
 }
 
 /// Bodies whose margin is their size: cones of normals drop most pairs of boxes and nothing that is found without them. (Wider normal
