@@ -192,6 +192,7 @@ impl Problem<'_> {
         if rests_beside || accuracy.company == Company::Crowd && system.is_crowd() {
             accuracy.still = Some(STILL * options.gap);
         }
+        accuracy.aim = if rests_beside { STILL * options.gap / precision } else { AIM };
         let found = Found {
             contacts,
             targets,

@@ -88,8 +88,7 @@ fn share_out(contacts: &mut [ContactPoint], old: &[ContactPoint]) {
     let (before, now) = (Wrench::of(old, about), Wrench::of(contacts, about));
     let mut missing = Wrench { push: before.push - now.push, turn: before.turn - now.turn };
     let square = |w: &Wrench| w.push.length_squared() + w.turn.length_squared() * weight;
-    let enough = ENOUGH * ENOUGH * square(&before);
-    let mut last = f64::INFINITY;
+    let (enough, mut last) = (ENOUGH * ENOUGH * square(&before), f64::INFINITY);
     for round in 0.. {
         let left = square(&missing);
         if left <= enough || round >= ROUNDS && left > GAINED * last {

@@ -15,7 +15,7 @@ pub(crate) struct Accuracy {
     pub(crate) company: Company,
     /// What slides slower than this could as well stick.
     pub(crate) slow: f64,
-    /// What may be left of bodies of a crowd in any case.
+    /// What may be left of bodies of a crowd by the impulses that there are.
     pub(crate) still: Option<f64>,
 }
 
@@ -32,11 +32,6 @@ pub(crate) enum Company {
 }
 
 impl Accuracy {
-    /// May so much be left in any case?
-    pub(super) fn is_still(self, residual: f64) -> bool {
-        self.still.is_some_and(|still| residual <= still)
-    }
-
     pub(super) fn in_crowd(self) -> bool {
         self.company != Company::Few
     }

@@ -59,7 +59,7 @@ impl System {
             return residual;
         }
         let (moved, mut residual) = (self.moved(), self.residual(targets));
-        if accuracy.is_still(residual) {
+        if accuracy.still.is_some_and(|still| residual <= still) {
             return residual;
         }
         let mut start = start;
@@ -77,6 +77,9 @@ impl System {
                 residual = self.better(residual, 0.0, |system| {
                     system.sweep_until(targets, accuracy, Pace::Conjugate, FIRST)
                 });
+            }
+            if accuracy.still.is_some() && residual <= self.aim(accuracy) {
+                return residual;
             }
             if moved > COUPLE && !self.is_calm(accuracy) && !could_stick && !self.is_long() {
                 if residual <= self.enough(accuracy).max(LEFT_OVER * self.swept(accuracy)) {
@@ -126,7 +129,7 @@ impl System {
         } else {
             tolerance
         };
-        aim.max(self.rounding())
+        aim.max(accuracy.aim * accuracy.precision).max(self.rounding())
     }
 
     /// What rounding leaves of rates: impulses change those of a light body between heavy ones by far more than it moves.
@@ -139,13 +142,14 @@ impl System {
     pub(super) fn enough(&self, accuracy: Accuracy) -> f64 {
         let (tolerance, moved) = (self.tolerance(accuracy), self.moved());
         let is_exact = self.has_joints || self.is_calm(accuracy);
-        if is_exact || moved <= COUPLE && !accuracy.in_crowd() {
-            self.aim(accuracy)
+        let several = if is_exact || moved <= COUPLE && !accuracy.in_crowd() {
+            0.0
         } else if self.is_long() || moved <= FEW && !accuracy.in_crowd() {
-            SEVERAL * tolerance
+            SEVERAL
         } else {
-            CROWDED * tolerance
-        }
+            CROWDED
+        };
+        self.aim(accuracy).max(several * tolerance)
     }
 
     /// What solutions of bodies that move may leave.
