@@ -176,7 +176,9 @@ impl Problem<'_> {
         let slow = span.resting_speed.max(options.gap / options.step);
         let company = self.company;
         let relative = if room == Room::Shared { RELATIVE * SHARED } else { RELATIVE };
-        let mut accuracy = Accuracy { precision, relative, aim: AIM, slow, company, still: None };
+        let beside_sleepers = states.iter().any(|state| state.asleep);
+        let mut accuracy =
+            Accuracy { precision, relative, aim: AIM, slow, company, still: None, beside_sleepers };
         let pushing: Vec<f64> = rows.iter().map(|row| row.pushing).collect();
         // What a motor drives does not oscillate.
         let mut spins: Vec<Option<DVec3>> = free.iter().map(|body| Some(body.velocity.angular)).collect();
@@ -188,11 +190,9 @@ impl Problem<'_> {
             .for_flights(&contacts, &targets, span.remaining)
             .with_running(&running);
         system.warm_start(&contacts);
-        let rests_beside = states.iter().any(|state| state.asleep);
-        if rests_beside || accuracy.company == Company::Crowd && system.is_crowd() {
+        if beside_sleepers || accuracy.company == Company::Crowd && system.is_crowd() {
             accuracy.still = Some(STILL * options.gap);
         }
-        accuracy.aim = if rests_beside { STILL * options.gap / precision } else { AIM };
         let found = Found {
             contacts,
             targets,

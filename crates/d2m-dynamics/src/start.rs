@@ -277,18 +277,10 @@ impl Simulation {
         let targets: Vec<f64> = touching.iter().flat_map(target).collect();
         let precision = touching.iter().map(wanted).fold(f64::INFINITY, f64::min) / 16.0;
         let mut system = System::new(bodies, &contacts, |body| body);
-        system.solve(
-            &targets,
-            Accuracy {
-                precision,
-                relative: 0.0,
-                aim: 1.0,
-                company: Company::Few,
-                slow: f64::INFINITY,
-                still: None,
-            },
-            Start::Sticking,
-        );
+        let (relative, aim, company, slow) = (0.0, 1.0, Company::Few, f64::INFINITY);
+        let accuracy =
+            Accuracy { precision, relative, aim, company, slow, still: None, beside_sleepers: false };
+        system.solve(&targets, accuracy, Start::Sticking);
         for &i in &self.unchecked {
             let body = &mut self.bodies[i];
             if body.is_dynamic() {

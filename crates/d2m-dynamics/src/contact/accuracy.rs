@@ -17,6 +17,8 @@ pub(crate) struct Accuracy {
     pub(crate) slow: f64,
     /// What may be left of bodies of a crowd by the impulses that there are.
     pub(crate) still: Option<f64>,
+    /// What sleeps beside them is woken by other solutions: these aim at that much, too.
+    pub(crate) beside_sleepers: bool,
 }
 
 /// What else there is besides the bodies of a system.

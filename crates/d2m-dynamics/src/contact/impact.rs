@@ -79,6 +79,7 @@ pub(crate) fn impact(
                 company: Company::Few,
                 slow: f64::INFINITY,
                 still: None,
+                beside_sleepers: false,
             };
             residual = system.solve(&targets, accuracy, Start::Sticking);
             system.doubled_energy(inertia) - energy

@@ -242,8 +242,15 @@ mod tests {
     use crate::velocity::Velocity;
     use glam::DVec3;
 
-    const EXACT: Accuracy =
-        Accuracy { precision: 1e-9, relative: 0.0, aim: 1.0, company: Company::Few, slow: 1.0, still: None };
+    const EXACT: Accuracy = Accuracy {
+        precision: 1e-9,
+        relative: 0.0,
+        aim: 1.0,
+        company: Company::Few,
+        slow: 1.0,
+        still: None,
+        beside_sleepers: false,
+    };
 
     /// In one round soft rows of a column yield by far more than that under all that lies on them.
     #[test]

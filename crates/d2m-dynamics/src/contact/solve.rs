@@ -129,7 +129,7 @@ impl System {
         } else {
             tolerance
         };
-        aim.max(accuracy.aim * accuracy.precision).max(self.rounding())
+        aim.max(accuracy.still.filter(|_| accuracy.beside_sleepers).unwrap_or(0.0)).max(self.rounding())
     }
 
     /// What rounding leaves of rates: impulses change those of a light body between heavy ones by far more than it moves.
@@ -166,8 +166,8 @@ impl System {
 
     /// Are the bodies about to rest, all that contacts connect, and not too many to be solved exactly?
     fn is_calm(&self, accuracy: Accuracy) -> bool {
-        let is_small = accuracy.company != Company::Heap && self.blocks.len() <= SETTLING;
-        is_small && self.mean_speed() <= CALM * accuracy.slow
+        let is_small = self.moved() <= SOME || !accuracy.beside_sleepers && self.blocks.len() <= SETTLING;
+        accuracy.company != Company::Heap && is_small && self.mean_speed() <= CALM * accuracy.slow
     }
 
     /// Does something slide so slowly that it might as well stick, where bodies are jammed? What follows a motion may take along what it
@@ -293,8 +293,15 @@ mod tests {
     use crate::contact::sweeps::tests::column;
     use glam::DMat3;
 
-    const EXACT: Accuracy =
-        Accuracy { precision: 1e-6, relative: 0.0, aim: 1e-3, company: Company::Few, slow: 1.0, still: None };
+    const EXACT: Accuracy = Accuracy {
+        precision: 1e-6,
+        relative: 0.0,
+        aim: 1e-3,
+        company: Company::Few,
+        slow: 1.0,
+        still: None,
+        beside_sleepers: false,
+    };
 
     /// Of a tall column sweeps leave something: a direct solution follows where that is more than twice what may be left.
     #[test]
@@ -308,7 +315,15 @@ mod tests {
         };
         let accuracy = |slow: f64| {
             let (precision, relative) = (1e-9, 1.0 / 1024.0);
-            Accuracy { precision, relative, aim: 1.0, company: Company::Crowd, slow, still: None }
+            Accuracy {
+                precision,
+                relative,
+                aim: 1.0,
+                company: Company::Crowd,
+                slow,
+                still: None,
+                beside_sleepers: false,
+            }
         };
         let targets = vec![0.0; count];
         let left = crossing().sweep_until(&targets, accuracy(0.0), Pace::Conjugate, FIRST);
@@ -324,8 +339,15 @@ mod tests {
             let mut column = System { is_row, ..column(count, 10.0) };
             column.bodies.iter_mut().for_each(|body| body.velocity.linear.x = 1e4);
             let (precision, relative, slow) = (1e-9, 1.0 / 1024.0, 1e4);
-            let accuracy =
-                Accuracy { precision, relative, aim: 1.0, company: Company::Crowd, slow, still: None };
+            let accuracy = Accuracy {
+                precision,
+                relative,
+                aim: 1.0,
+                company: Company::Crowd,
+                slow,
+                still: None,
+                beside_sleepers: false,
+            };
             column.solve(&vec![0.0; count], accuracy, Start::Present)
         };
         let (row, crowd) = (left(true), left(false));

@@ -70,6 +70,7 @@ pub(super) mod tests {
         company: Company::Crowd,
         slow: 1.0,
         still: None,
+        beside_sleepers: false,
     };
 
     /// So many bodies of mass one on each other, the lowest one on the ground, which is the last body; all fall at one speed.
