@@ -7,7 +7,7 @@ use glam::DVec3;
 const ROUNDS: u32 = 8;
 const GAINED: f64 = 0.9;
 /// The part of a push that need not be shared out better: under twenty others a body is pushed off by less than quiet ones move.
-const ENOUGH: f64 = 1.0 / (1u64 << 20) as f64;
+const ENOUGH: f64 = 1.0 / (1u64 << 19) as f64;
 
 /// Takes over the impulses of contacts of the same features; what features that are gone had goes to the nearest contacts, new ones first:
 /// of faces that slide along each other vertices leave and edges cross, but what they press with stays. Then all of them share it out, so that
