@@ -4,7 +4,7 @@ use crate::contact::ContactPoint;
 use glam::DVec3;
 
 /// Rounds over the contacts of a pair, and more as long as each leaves less than a part of what is missing, squared: where no law forbids it.
-const ROUNDS: u32 = 8;
+const ROUNDS: u32 = 12;
 const GAINED: f64 = 0.9;
 /// The part of a push that need not be shared out better: under twenty others a body is pushed off by less than quiet ones move.
 const ENOUGH: f64 = 1.0 / (1u64 << 19) as f64;
