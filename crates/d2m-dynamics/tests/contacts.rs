@@ -173,8 +173,8 @@ fn a_stone_that_only_friction_holds_is_held() {
     let start = simulation.position(stone).y;
     assert_eq!(run(&mut simulation, 0.1).skipped, 0.0);
     let risen = simulation.position(stone).y - start;
-    // It would have fallen by 0.05; what restores the gap may lift it by a millionth of that.
-    assert!(risen > 0.01 && risen <= 0.02 + 5e-8, "{risen}");
+    // It would have fallen by 0.05; what restores the gap may lift it by a millionth of that gap above the jaws.
+    assert!(risen > 0.01 && risen <= 0.02 + 1e-6 * 1e-3, "{risen}");
 }
 
 /// Slides at the rate of its friction: what sticks first is let go where it cannot.

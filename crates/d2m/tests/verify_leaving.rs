@@ -222,7 +222,7 @@ fn a_time_limit_is_none_of_the_proof() {
     }
 }
 
-/// Bodies that begin apart have left at once: nobody is told so of a start of which nothing else is proven.
+/// Bodies that begin apart have left at once: no answer says so of a start of which nothing else is proven.
 #[test]
 fn what_begins_apart_is_proven_apart() {
     let cube = cube(1.0);

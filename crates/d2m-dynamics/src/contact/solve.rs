@@ -315,15 +315,7 @@ mod tests {
         };
         let accuracy = |slow: f64| {
             let (precision, relative) = (1e-9, 1.0 / 1024.0);
-            Accuracy {
-                precision,
-                relative,
-                aim: 1.0,
-                company: Company::Crowd,
-                slow,
-                still: None,
-                beside_sleepers: false,
-            }
+            Accuracy { precision, relative, aim: 1.0, company: Company::Crowd, slow, ..EXACT }
         };
         let targets = vec![0.0; count];
         let left = crossing().sweep_until(&targets, accuracy(0.0), Pace::Conjugate, FIRST);
@@ -339,15 +331,7 @@ mod tests {
             let mut column = System { is_row, ..column(count, 10.0) };
             column.bodies.iter_mut().for_each(|body| body.velocity.linear.x = 1e4);
             let (precision, relative, slow) = (1e-9, 1.0 / 1024.0, 1e4);
-            let accuracy = Accuracy {
-                precision,
-                relative,
-                aim: 1.0,
-                company: Company::Crowd,
-                slow,
-                still: None,
-                beside_sleepers: false,
-            };
+            let accuracy = Accuracy { precision, relative, aim: 1.0, company: Company::Crowd, slow, ..EXACT };
             column.solve(&vec![0.0; count], accuracy, Start::Present)
         };
         let (row, crowd) = (left(true), left(false));
