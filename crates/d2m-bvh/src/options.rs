@@ -1,7 +1,7 @@
 use crate::{Budget, Solid};
 
 /// δ as a part of the larger body's radius, if none is given.
-pub(crate) const DEFAULT_TOLERANCE: f64 = 1e-10;
+const DEFAULT_TOLERANCE: f64 = 1e-10;
 
 /// How far a query goes.
 ///
@@ -163,6 +163,19 @@ impl QueryOptions {
     pub const fn with_start(mut self, start: Start) -> Self {
         self.start = start;
         self
+    }
+
+    /// δ of two bodies of which the larger one has this radius, about its own center and with what it has around its mesh: the
+    /// given one, or 1e-10 times the radius. What is given is not checked here. Bodies whose distance at the start is at most the minimum
+    /// separation plus this are in contact there; a pair whose places round by more has a larger tolerance ([`Contact`](crate::Contact)).
+    ///
+    /// ```
+    /// use d2m_bvh::QueryOptions;
+    /// assert_eq!(QueryOptions::default().tolerance_of(2.0), 2e-10);
+    /// assert_eq!(QueryOptions::default().with_tolerance(0.5).tolerance_of(2.0), 0.5);
+    /// ```
+    pub fn tolerance_of(&self, radius: f64) -> f64 {
+        self.tolerance.unwrap_or(DEFAULT_TOLERANCE * radius)
     }
 
     /// On all threads of the current rayon pool, or on one.

@@ -262,12 +262,11 @@ impl RobotScene {
         if is_settled {
             return;
         }
-        let radii = a.radius + b.radius;
-        let mut separation = self.pair_options(pair).min_separation;
-        if radii > 0.0 {
-            // Meshes that are further apart than this belong to bodies that are further apart than the separation.
-            separation = (separation + radii.next_up()).next_up();
-        }
+        let (options, radii) = (self.pair_options(pair), a.radius + b.radius);
+        let size = |part: &Part| self.world.body(part.id).tree().radius() + part.radius;
+        let tolerance = options.tolerance_of(size(a).max(size(b)).next_up()).next_up();
+        // Meshes that are further apart than this belong to bodies that are not in contact, at the start neither.
+        let separation = ((options.min_separation + tolerance).next_up() + radii.next_up()).next_up();
         let seen_from = match [a.carrier(), b.carrier()] {
             [Some(a), Some(b)] => self.robot.last_common(a, b),
             _ => None,

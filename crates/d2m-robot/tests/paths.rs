@@ -292,6 +292,30 @@ fn spheres_and_capsules_are_exact() {
     assert_eq!(start, Some(d2m_bvh::StartState::Overlapping));
 }
 
+/// Where a link is within the tolerance of an obstacle when a path begins, as a query of the pair says: in contact at once.
+#[test]
+fn what_is_within_the_tolerance_at_the_start_is_in_contact() {
+    let urdf = "<robot name=\"r\"><link name=\"base\"/><link name=\"cart\"><collision><geometry><box size=\"1 1 1\"/></geometry></collision></link>\
+         <joint name=\"run\" type=\"prismatic\"><parent link=\"base\"/><child link=\"cart\"/><axis xyz=\"1 0 0\"/></joint></robot>";
+    let robot = Arc::new(Robot::parse("r.urdf", urdf, &RobotOptions::new()).unwrap());
+    let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()));
+    for (gap, tolerance) in [(0.9e-2, Some(1e-2)), (0.5e-10, None), (1.1e-2, Some(1e-2))] {
+        for separation in [0.0, 0.25] {
+            let mut options = QueryOptions::default().with_min_separation(separation);
+            options.tolerance = tolerance;
+            let mut scene = RobotScene::new(Arc::clone(&robot), None, options).unwrap();
+            let place = DVec3::X * -(1.0 + separation + gap);
+            let obstacle =
+                d2m_robot::Obstacle::at_rest("wall", Arc::clone(&cube), place, glam::DQuat::IDENTITY);
+            scene.add_obstacle(obstacle.unwrap()).unwrap();
+            let answer = scene.edges(&["run"]).unwrap().check(&[0.0], &[2.0]).unwrap();
+            let is_free = tolerance.is_some_and(|tolerance| gap > tolerance);
+            assert_eq!(answer.is_free(), is_free, "{gap} {separation}");
+            assert!(is_free || answer.free_until() == 0.0);
+        }
+    }
+}
+
 /// Two links that are welded to each other (by way of a third), or a link that never moves and an obstacle, in contact or not: every path
 /// says so.
 #[test]

@@ -4,18 +4,19 @@ use crate::Body;
 use d2m_feature::MovingSphere;
 use d2m_interval::{Interval, IntervalVec3};
 
-/// Holds the body where its motion is known, for times since `start`; none if its twist is not constant.
+/// Holds the body and a margin around it where its motion is known, for times since `start`; none if its twist is not constant.
 ///
 /// The reference point of a constant twist moves in a straight line, and every point of the body is within
 /// |center of the mesh − reference point| + radius of the mesh + radius of the body about its mesh of it.
-pub(crate) fn sphere_about(body: &Body, start: f64) -> Option<MovingSphere> {
+pub(crate) fn sphere_about(body: &Body, start: f64, margin: f64) -> Option<MovingSphere> {
     let twist = body.motion().constant_twist()?;
     let since = Interval::point(start) - Interval::point(twist.reference_time());
     let path = IntervalVec3::point(twist.linear_velocity()) * since + twist.position();
     let off = IntervalVec3::point(body.tree().center()) - twist.at();
     let center = path.mid();
     let rounded = (path - center).norm();
-    let reach = Interval::point(body.tree().radius()) + Interval::point(body.radius());
+    let own = Interval::point(body.tree().radius()) + Interval::point(body.radius());
+    let reach = own + Interval::point(margin);
     let radius = (off.norm() + rounded + reach).hi();
     let sphere = MovingSphere { center, velocity: twist.linear_velocity(), radius };
     (radius.is_finite() && body.radius() >= 0.0).then_some(sphere)
@@ -35,7 +36,7 @@ mod tests {
         let huge =
             ConstantTwist::REST.with_position(DVec3::X * 1e200).with_linear_velocity(DVec3::X * -1e200);
         let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box").unwrap()));
-        let of = |motion: ConstantTwist| sphere_about(&Body::new(Arc::clone(&tree), motion), 2.0);
+        let of = |motion: ConstantTwist| sphere_about(&Body::new(Arc::clone(&tree), motion), 2.0, 0.0);
         assert!(of(huge.with_reference_time(-1e200)).is_none() && of(ConstantTwist::REST).is_some());
     }
 
@@ -54,7 +55,7 @@ mod tests {
                 .with_reference_time([0.0, -1e3][round % 2]);
             let body = Body::new(Arc::clone(&tree), twist);
             let start = random.vector().x * 3.0;
-            let sphere = sphere_about(&body, start).unwrap();
+            let sphere = sphere_about(&body, start, 0.0).unwrap();
             for k in 0..20 {
                 let since = f64::from(k) * 0.1;
                 let pose = twist.pose_and_twist(start + since).0;

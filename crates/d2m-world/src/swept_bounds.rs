@@ -34,6 +34,12 @@ impl<'a> CoveredBody<'a> {
         Ok(Self { tree: body.body, motion, radius: body.radius })
     }
 
+    /// The same body with a margin around it, which is not negative. A radius that is none stays what it is.
+    pub(crate) fn with_margin(self, margin: f64) -> Self {
+        let radius = if self.radius >= 0.0 { (self.radius + margin).next_up() } else { self.radius };
+        Self { radius, ..self }
+    }
+
     fn part(self, from: f64, to: f64) -> Option<Self> {
         Some(Self { motion: self.motion.part(from, to)?, ..self })
     }

@@ -225,3 +225,36 @@ fn candidates_that_were_removed_are_refused() {
     assert!(other.index() == ids[1].index() && ask(&world, pair).is_err());
     assert!(matches!(ask(&world, Candidate { b: other, ..pair }), Ok(FirstContact::Contact { .. })));
 }
+
+/// Bodies that the tolerance puts in contact at the start are so in a world, too, whatever their boxes and spheres prove of the separation:
+/// with a tolerance that is given or follows from the sizes, one for all pairs or a separation of their own, rounded or not.
+#[test]
+fn what_is_within_the_tolerance_at_the_start_is_in_contact() {
+    let turning = ConstantTwist::REST.with_angular_velocity(DVec3::Y * 0.1).with_linear_velocity(DVec3::X);
+    let cases =
+        [(Some(1e-2), 0.9e-2, 0.0), (Some(1e-2), 0.9e-2, 0.5), (None, 0.8e-10, 0.0), (None, 0.8e-10, 0.5)];
+    for (tolerance, gap, own) in cases {
+        for (radius, going) in
+            [(0.0, at(DVec3::X)), (0.25, at(DVec3::X)), (0.0, turning.with_position(DVec3::X))]
+        {
+            for separation in [0.0, 0.125] {
+                let mut options = QueryOptions::default().with_min_separation(separation);
+                options.tolerance = tolerance;
+                let mut world = World::new(options);
+                let wanted = if own > 0.0 { own } else { separation };
+                let rest =
+                    Body::new(cube(), at(DVec3::X * -(2.0 * radius + wanted + gap))).with_radius(radius);
+                let [a, b] = [rest, Body::new(cube(), going).with_radius(radius)].map(|body| world.add(body));
+                if own > 0.0 {
+                    world.set_min_separation(a, b, Some(own));
+                }
+                let options = world.pair_options(a, b);
+                let [one, other] = [a, b].map(|id| world.body(id).clone());
+                let alone = d2m_bvh::time_of_contact(one.moving(), other.moving(), Window::UNIT, &options);
+                let case = format!("{tolerance:?} {gap} {own} {radius} {separation}");
+                assert!(alone.unwrap().contact().is_some_and(|found| found.time_lo == 0.0), "{case}");
+                assert_eq!(meeting(&mut world, Window::UNIT), [[0, 1]], "{case}");
+            }
+        }
+    }
+}

@@ -1,6 +1,5 @@
 //! Constants of one query.
 
-use crate::options::DEFAULT_TOLERANCE;
 use crate::pair::boxes::node_scale::NodeScale;
 use crate::pair::motion::frame::RelativeMotion;
 use crate::pair::motion::local_motion::LocalMotion;
@@ -244,9 +243,7 @@ impl<'a> MovingScene<'a> {
         let (a, b) = (&self.a, &self.b);
         let error = TRIANGLE_ERROR * self.size;
         let to_length = |length: f64| length * (1.0 / self.units.length());
-        let wanted = options
-            .tolerance
-            .map_or_else(|| DEFAULT_TOLERANCE * to_length(a.tree.radius().max(b.tree.radius())), to_length);
+        let wanted = to_length(options.tolerance_of(a.tree.radius().max(b.tree.radius())));
         self.tolerance = wanted.max(LEAST_TOLERANCE_ERRORS * error);
         let level = to_length(options.min_separation) + self.tolerance;
         let centripetal = [a, b].map(|body| body.spin() * body.spin() * body.reach() * UP);

@@ -16,7 +16,6 @@ use super::concluded::{Claimed, conclude_apart, sum_of_distances};
 use super::constant_twist::{ask, scene_of_twists};
 use super::true_poses::Meeting;
 use crate::covered_pair::CoveredPair;
-use crate::options::DEFAULT_TOLERANCE;
 use crate::pair::scene::MovingTree;
 use crate::{
     Answered, Budget, Contact, Evidence, Mode, Moving, QueryError, QueryOptions, SearchCounts, Solid,
@@ -56,8 +55,7 @@ const TESTS_A_FIT: u64 = 256;
 
 /// The tolerance of a query.
 pub(super) fn tolerance_of(bodies: &[Moving<'_>; 2], options: &QueryOptions) -> f64 {
-    let radius = bodies[0].body.radius().max(bodies[1].body.radius());
-    options.tolerance.unwrap_or(DEFAULT_TOLERANCE * radius)
+    options.tolerance_of(bodies[0].body.radius().max(bodies[1].body.radius()))
 }
 
 /// The query; options were checked before.

@@ -4,7 +4,6 @@
 //! further than s + r_A + r_B apart, so the separation of the query carries the radii, and the witness points move along
 //! the normal.
 
-use crate::options::DEFAULT_TOLERANCE;
 use crate::{Contact, MeshTree, Moving, QueryError, QueryOptions, StartState, TimeOfContact};
 use d2m_lanes::UP;
 
@@ -57,7 +56,7 @@ impl Rounded {
             return Err(QueryError::BadMinSeparation { value });
         }
         let size = |k: usize| trees[k].radius() + self.radii[k];
-        let tolerance = options.tolerance.unwrap_or(DEFAULT_TOLERANCE * size(0).max(size(1)));
+        let tolerance = options.tolerance_of(size(0).max(size(1)));
         let separation = if value == 0.0 { self.sum() } else { (value + self.sum()).next_up() };
         Ok(options.with_tolerance(tolerance).with_min_separation(separation))
     }

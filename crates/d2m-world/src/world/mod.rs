@@ -374,7 +374,8 @@ impl World {
     }
 
     /// The pairs that the broad phase cannot exclude, smaller place first, ascending. Every pair that comes within its minimum
-    /// separation during the window, and is not ignored, is among them.
+    /// separation during the window, and is not ignored, is among them, and so is every
+    /// pair that is in contact by its tolerance at the start.
     ///
     /// # Errors
     /// A motion that does not cover the window.
@@ -389,6 +390,6 @@ impl World {
     }
 
     fn rules(&self) -> Rules<'_> {
-        Rules { slots: &self.slots, filter: &self.filter, separation: self.options.min_separation }
+        Rules { slots: &self.slots, filter: &self.filter, options: &self.options }
     }
 }

@@ -7,12 +7,12 @@ use super::filter::PairFilter;
 use super::pair_queue::PairQueue;
 use super::pair_state::Entry;
 use super::slots::Slots;
-use crate::Aabb;
 use crate::batches::BOXES;
 use crate::box_tree::{BoxTree, IndexPair};
 use crate::moving_sphere::sphere_about;
 use crate::swept_bounds::{CoveredBody, SliceRange, Slicing, Sweep, SweptSlices};
-use d2m_bvh::Window;
+use crate::{Aabb, Body};
+use d2m_bvh::{QueryOptions, Window};
 use d2m_feature::{FirstMeeting, MovingSphere};
 use d2m_mesh::parallel::map_in_order;
 use d2m_motion::OutsideDomain;
@@ -41,8 +41,30 @@ enum Slices {
 pub(super) struct Rules<'a> {
     pub(super) slots: &'a Slots,
     pub(super) filter: &'a PairFilter,
+    pub(super) options: &'a QueryOptions,
+}
+
+impl Rules<'_> {
     /// Of pairs without a separation of their own.
-    pub(super) separation: f64,
+    const fn usual_separation(self) -> f64 {
+        self.options.min_separation
+    }
+
+    /// The separation of a pair.
+    pub(super) fn separation(self, pair: IndexPair) -> f64 {
+        self.filter.separation(pair, self.usual_separation())
+    }
+
+    /// Boxes and spheres are wider than their bodies by this. The margins of two bodies are together at least their tolerance, so that
+    /// what boxes or spheres exclude is not in contact at the start of a window either, where a tolerance above the separation is.
+    fn margin(self, body: &Body) -> f64 {
+        let margin = match self.options.tolerance {
+            Some(tolerance) => (0.5 * tolerance).next_up(),
+            None => self.options.tolerance_of((body.tree().radius() + body.radius()).next_up()).next_up(),
+        };
+        // What is none is refused by the query of a pair.
+        if margin > 0.0 { margin } else { 0.0 }
+    }
 }
 
 /// Kept from query to query.
@@ -132,7 +154,7 @@ impl Schedule {
                 self.hulls.resize(rules.slots.places(), Aabb::EMPTY);
                 self.slices.resize(rules.slots.places(), Slices::NotWorthIt);
                 self.spheres.resize(rules.slots.places(), None);
-                self.enclose(rules.slots, span, changed)?;
+                self.enclose(rules, span, changed)?;
                 if changed.len() * CHANGED_PART > rules.slots.places() {
                     self.tree.fit(&self.hulls);
                     self.sweep(rules);
@@ -148,7 +170,7 @@ impl Schedule {
                 self.hulls = vec![Aabb::EMPTY; all.len()];
                 self.slices = vec![Slices::NotWorthIt; all.len()];
                 self.spheres = vec![None; all.len()];
-                self.enclose(rules.slots, window, &all)?;
+                self.enclose(rules, window, &all)?;
                 self.tree.fit(&self.hulls);
                 self.sweep(rules);
                 Ok(Prepared::Anew)
@@ -157,15 +179,16 @@ impl Schedule {
     }
 
     /// Boxes of some bodies over the rest of the span.
-    fn enclose(&mut self, slots: &Slots, span: Window, places: &[u32]) -> Result<(), Uncovered> {
+    fn enclose(&mut self, rules: Rules<'_>, span: Window, places: &[u32]) -> Result<(), Uncovered> {
         let from = self.from;
         let enclosed = map_in_order(places, BOXES, |&place| {
-            let Some(body) = slots.at(place) else { return Ok(None) };
+            let Some(body) = rules.slots.at(place) else { return Ok(None) };
             CoveredBody::try_new(body, from, span.end()).map(|covered| {
-                let hull = covered.swept();
+                let margin = rules.margin(body);
+                let hull = covered.with_margin(margin).swept();
                 let is_wide = (hull.high - hull.low).max_element() > FAR * body.tree().radius();
                 let slices = if is_wide { Slices::Unknown } else { Slices::NotWorthIt };
-                Some((hull, slices, sphere_about(body, span.start())))
+                Some((hull, slices, sphere_about(body, span.start(), margin)))
             })
         });
         for (&place, enclosed) in places.iter().zip(enclosed) {
@@ -180,9 +203,10 @@ impl Schedule {
     /// The queue from scratch.
     fn sweep(&mut self, rules: Rules<'_>) {
         let mut pairs = Vec::new();
-        self.tree.pairs(&self.hulls, rules.separation, |pair| pairs.push(pair));
-        let own = rules.filter.wider_than(rules.separation);
-        let more = own.filter(|&(pair, separation)| self.meets_beyond(pair, rules.separation, separation));
+        let usual = rules.usual_separation();
+        self.tree.pairs(&self.hulls, usual, |pair| pairs.push(pair));
+        let own = rules.filter.wider_than(usual);
+        let more = own.filter(|&(pair, separation)| self.meets_beyond(pair, usual, separation));
         pairs.extend(more.map(|(pair, _)| pair));
         self.cut(rules, &pairs);
         let entries: Vec<Entry> = pairs.into_iter().filter_map(|pair| self.entry(rules, pair)).collect();
@@ -199,13 +223,14 @@ impl Schedule {
     /// Entries of changed bodies (ascending); their old ones are recognised by their versions.
     fn insert(&mut self, rules: Rules<'_>, changed: &[u32]) {
         let mut pairs = Vec::new();
+        let usual = rules.usual_separation();
         for &place in changed {
-            self.tree.pairs_of(&self.hulls, place, rules.separation, |pair| pairs.push(pair));
+            self.tree.pairs_of(&self.hulls, place, usual, |pair| pairs.push(pair));
         }
-        let own = rules.filter.wider_than(rules.separation);
+        let own = rules.filter.wider_than(usual);
         let more = own.filter(|&(pair, separation)| {
             pair.iter().any(|place| changed.binary_search(place).is_ok())
-                && self.meets_beyond(pair, rules.separation, separation)
+                && self.meets_beyond(pair, usual, separation)
         });
         pairs.extend(more.map(|(pair, _)| pair));
         pairs.sort_unstable();
@@ -245,8 +270,9 @@ impl Schedule {
         let (slicing, from) = (Slicing::new(span), self.from);
         let boxes = map_in_order(&wanted, BOXES, |&place| {
             // Its box was made from an earlier time on, so that the motion covers this.
-            let covered = CoveredBody::try_new(rules.slots.at(place)?, from, span.end()).ok()?;
-            Some(SweptSlices::enclose(covered, &slicing))
+            let body = rules.slots.at(place)?;
+            let covered = CoveredBody::try_new(body, from, span.end()).ok()?;
+            Some(SweptSlices::enclose(covered.with_margin(rules.margin(body)), &slicing))
         });
         for (&place, slices) in wanted.iter().zip(boxes) {
             if let Some(slices) = slices {
@@ -276,7 +302,7 @@ impl Schedule {
         let [Some(a), Some(b)] = pair.map(|place| self.spheres[place as usize].as_ref()) else {
             return Some(self.from);
         };
-        let separation = rules.filter.separation(pair, rules.separation);
+        let separation = rules.separation(pair);
         // Times since the start of the span, the first one rounded down and the last one up.
         let begin = (self.from - span.start()).next_down().max(0.0);
         let end = (span.end() - span.start()).next_up();
@@ -301,7 +327,7 @@ impl Schedule {
                 Slices::Unknown | Slices::NotWorthIt => None,
             },
         };
-        let separation = rules.filter.separation(pair, rules.separation);
+        let separation = rules.separation(pair);
         let SliceRange { first, last } = SliceRange::of_pair(sweep(pair[0]), sweep(pair[1]), separation)?;
         let slicing = Slicing::new(span);
         let (start, end) = (slicing.time(first).max(meeting), slicing.time(last + 1));
@@ -412,7 +438,7 @@ impl Schedule {
             wanted.sort_unstable();
             wanted.dedup();
         }
-        schedule.enclose(rules.slots, window, &wanted)?;
+        schedule.enclose(rules, window, &wanted)?;
         schedule.insert(rules, some);
         Ok(schedule)
     }

@@ -173,8 +173,7 @@ impl World {
         let mut changed = core::mem::take(&mut self.changed);
         changed.sort_unstable();
         changed.dedup();
-        let rules =
-            Rules { slots: &self.slots, filter: &self.filter, separation: self.options.min_separation };
+        let rules = Rules { slots: &self.slots, filter: &self.filter, options: &self.options };
         // After a failure everything is made anew, also what changed.
         let prepared = self.schedule.prepare(rules, window, &changed);
         let prepared = prepared.map_err(|uncovered| self.uncovered(uncovered))?;
@@ -205,7 +204,7 @@ impl World {
                 continue;
             }
             let rules = self.rules();
-            let separation = rules.filter.separation(pair, rules.separation);
+            let separation = rules.separation(pair);
             if rules.filter.ignores(pair, rules.slots.groups(pair)) {
                 continue;
             }
