@@ -30,8 +30,9 @@ struct Piece {
 }
 
 impl RigidBody {
-    /// The next piece of a kinematic body's motion: the twist about its center that joins the poses at its ends, as long
-    /// as the motion is proven to stay close to it.
+    /// The next piece of a kinematic body's motion: the twist about its center that leads from where it is to the pose at the end, as long
+    /// as the motion is proven to stay close to it. It is where its last flight ended, which is off its motion by rounding, or by what an error
+    /// that ended that flight has left: were it put where its motion is, it could be put into what touches it.
     ///
     /// # Errors
     /// [`StepError::TooFast`] where no flight that is long enough does; a motion that does not cover the step.
@@ -41,12 +42,10 @@ impl RigidBody {
             return self.follow_target(end);
         }
         let Some(motion) = self.covered_motion(start, end)? else { return Ok(()) };
-        let first = self.place_by(motion, start);
         let mut horizon = motion.motion().smooth_until(start).map_or(end, |joint| end.min(joint));
         for _ in 0..=MOST_HALVINGS {
-            let piece = self.piece(motion, first, start, horizon);
+            let piece = self.piece(motion, start, horizon);
             if self.bound_deviation(motion, &piece) <= OFF_MOTION * gap {
-                (self.position, self.orientation) = first;
                 self.fly(piece.velocity, horizon);
                 return Ok(());
             }
@@ -125,12 +124,12 @@ impl RigidBody {
         (pose.transform_point(self.center), pose.rotation.normalize())
     }
 
-    fn piece(&self, motion: CoveredMotion<'_>, (x, q): (DVec3, DQuat), start: f64, end: f64) -> Piece {
+    fn piece(&self, motion: CoveredMotion<'_>, start: f64, end: f64) -> Piece {
         let length = end - start;
         let (last_x, last_q) = self.place_by(motion, end);
         let velocity = Velocity {
-            linear: (last_x - x) / length,
-            angular: rotation_vector(last_q * q.conjugate()) / length,
+            linear: (last_x - self.position) / length,
+            angular: rotation_vector(last_q * self.orientation.conjugate()) / length,
         };
         Piece { time: Interval::new(start, end), length, velocity }
     }

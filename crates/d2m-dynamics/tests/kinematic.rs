@@ -3,12 +3,13 @@
 mod ground;
 
 use d2m_bvh::{MeshTree, TriMesh};
-use d2m_dynamics::{Body, Kind, Segment, Simulation, SimulationError, SimulationOptions, StepError};
+use d2m_dynamics::{Body, BodyId, Kind, Segment, Simulation, SimulationError, SimulationOptions, StepError};
 use d2m_motion::{
     Chain, ConstantTwist, Joint, JointKind, JointValue, Keyframes, OutsideDomain, Pose, RigidMotion, Span,
 };
 use glam::{DQuat, DVec3};
 use ground::tree;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 const GAP: f64 = 1e-3;
@@ -51,6 +52,53 @@ fn turned(segments: &[Segment], motion: &dyn RigidMotion) -> f64 {
         }
     }
     turned
+}
+
+/// How far bodies are at most from where their flights before had them when the next ones begin.
+fn widest_join(segments: &[Segment]) -> f64 {
+    let mut flights: HashMap<BodyId, ConstantTwist> = HashMap::new();
+    let mut widest = 0.0f64;
+    for segment in segments {
+        for &(id, flight) in &segment.changed {
+            if let Some(last) = flights.insert(id, flight) {
+                let [last, next] = [last, flight].map(|flight| flight.pose_and_twist(segment.start).0);
+                let turned = last.rotation.dot(next.rotation).abs();
+                assert!(turned > 1.0 - 1e-14, "{turned}");
+                widest = widest.max(last.translation.distance(next.translation));
+            }
+        }
+    }
+    widest
+}
+
+/// An error ends the flight of a press, which is a chord of its motion: it goes on from there.
+#[test]
+fn what_an_error_ends_goes_on_from_where_it_is() {
+    let options = SimulationOptions::default().with_gap(1e-2);
+    let mut simulation = Simulation::new(options).unwrap();
+    let floor = Body::new("floor", ground::cube()).with_kind(Kind::Static);
+    simulation.add(&floor.with_position(DVec3::Y * -0.5)).unwrap();
+    let stone = Body::new("stone", tree("box?x=0.1&y=0.1&z=0.1")).with_position(DVec3::Y * 0.11);
+    let stone = simulation.add(&stone).unwrap();
+    let value = JointValue::try_polynomial(vec![0.9, 0.0, -40.0]).unwrap();
+    let kind = JointKind::Prismatic { axis: DVec3::Y, value };
+    let motion = Chain::try_new(vec![Joint::try_new(DVec3::ZERO, DQuat::IDENTITY, kind).unwrap()]).unwrap();
+    let press = Body::new("press", ground::cube()).with_kind(Kind::Kinematic(Arc::new(motion)));
+    simulation.add(&press).unwrap();
+    let mut segments = Vec::new();
+    let error = (0..20).find_map(|_| match simulation.step() {
+        Ok(report) => {
+            segments.extend(report.segments);
+            None
+        }
+        Err(error) => Some(error),
+    });
+    let error = error.expect("the stone is crushed");
+    segments.extend(simulation.finish());
+    assert!(matches!(error, StepError::Crushed { .. } | StepError::Cornered { .. }), "{error}");
+    assert!(simulation.remove(stone));
+    segments.extend(run(&mut simulation, 5));
+    assert!(widest_join(&segments) < 1e-14, "{:e}", widest_join(&segments));
 }
 
 /// Also where a quarter of a step is a number of whole turns: samples of the motion alone would show a blade that stands still.

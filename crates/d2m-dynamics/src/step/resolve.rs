@@ -134,7 +134,7 @@ impl Step<'_> {
         for &i in &group.members {
             let body = &mut self.sim.bodies[i];
             if body.is_kinematic() && (occasion == Occasion::Start || body.horizon <= clock.now) {
-                body.time = clock.now;
+                body.advance(clock.now, self.sim.options.gravity);
                 body.follow(self.end, self.sim.options.gap)?;
                 self.sim.recorder.change(body.id, body.flight);
             }
