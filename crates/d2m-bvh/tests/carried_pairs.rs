@@ -219,6 +219,50 @@ fn what_moves_in_one_frame_is_seen_from_there() {
     }
 }
 
+/// With a coarse tolerance the normal is not quite the direction from one point to the other, so that the frame's turning moves them along it.
+#[test]
+fn points_close_as_the_world_sees_them() {
+    let mut random = KnuthRandom(8);
+    let (first, second) = (cuboid_at(DVec3::ZERO, 0.5), cuboid_at(DVec3::ZERO, 0.25));
+    let options = QueryOptions::default().with_tolerance(0.02).with_min_separation(0.05);
+    let (mut met, mut turned) = (0, 0);
+    for round in 0..40 {
+        let poses = |random: &mut KnuthRandom, center: DVec3| {
+            let pose = |k: u32| {
+                let translation = center * (1.0 - f64::from(k)) + random.vector() * 0.2;
+                (f64::from(k), Pose { translation, rotation: random.moderate_turn(), at: DVec3::ZERO })
+            };
+            let keys = [0, 1, 2].map(pose);
+            Spline::try_through(&keys, SplineDegree::Cubic).unwrap()
+        };
+        let inner = [DVec3::ZERO, random.vector() * 4.0].map(|center| poses(&mut random, center));
+        let bodies = inner.each_ref().map(|inner| Composed::new(fast_twist(), inner));
+        let links = inner.each_ref().map(|inner| Composed::new(fast_chain(), inner));
+        let motions: [[&dyn RigidMotion; 2]; 2] = [[&bodies[0], &bodies[1]], [&links[0], &links[1]]];
+        for [of_a, of_b] in motions {
+            let (a, b) = (Moving::new(&first, of_a).with_radius(0.01), Moving::new(&second, of_b));
+            let answer = time_of_contact(a, b, Window::try_new(0.0, 2.0).unwrap(), &options).unwrap();
+            let Some(contact) = answer.contact().filter(|contact| contact.start == StartState::Apart) else {
+                continue;
+            };
+            let velocity = |motion: &dyn RigidMotion, point: DVec3| {
+                let (pose, twist) = motion.pose_and_twist(contact.time_lo);
+                twist.velocity_of(point - pose.translation)
+            };
+            let [of_a, of_b] = [velocity(of_a, contact.point_a), velocity(of_b, contact.point_b)];
+            let closing = (of_a - of_b).dot(contact.normal);
+            assert!(
+                (contact.closing_speed - closing).abs() < 1e-10 * (of_a.length() + of_b.length()),
+                "{round}"
+            );
+            let between = contact.point_b - contact.point_a;
+            met += 1;
+            turned += u32::from(between.normalize().dot(contact.normal) < 1.0 - 1e-6);
+        }
+    }
+    assert!(met > 20 && turned > 5, "{met} {turned}");
+}
+
 /// A link that turns by `rate` in unit time, and a slide on it that comes in to two tenths before the end.
 fn links(rate: f64) -> [Chain; 2] {
     let base = Chain::try_new(vec![joint(DVec3::Y, DVec3::Z, rate)]).unwrap();

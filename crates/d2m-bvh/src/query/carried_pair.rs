@@ -60,7 +60,8 @@ impl<'a> CarriedPair<'a> {
             TimeOfContact::Contact(contact) => {
                 let [normal, point_a, point_b] =
                     self.carry(contact.time_lo, contact.normal, [contact.point_a, contact.point_b])?;
-                Ok(TimeOfContact::Contact(Contact { normal, point_a, point_b, ..contact }))
+                let closing_speed = contact.closing_speed + self.turning_speed(&contact);
+                Ok(TimeOfContact::Contact(Contact { normal, point_a, point_b, closing_speed, ..contact }))
             }
             other => Ok(other),
         }
@@ -76,15 +77,31 @@ impl<'a> CarriedPair<'a> {
         Ok(Clearance { point_a, point_b, normal, ..found })
     }
 
+    /// What the turning of the carrier adds to how fast the points of a contact come together along its normal, which may not be quite the
+    /// direction from one to the other.
+    fn turning_speed(&self, contact: &Contact) -> f64 {
+        let Some(carrier) = self.motion() else { return 0.0 };
+        let (pose, twist) = carrier.pose_and_twist(contact.time_lo);
+        let spin = pose.rotation.normalize().conjugate() * twist.angular;
+        let speed = spin.cross(contact.point_a - contact.point_b).dot(contact.normal);
+        // Of one that is no number nothing is known.
+        if speed.is_finite() { speed } else { 0.0 }
+    }
+
+    /// What carries both.
+    fn motion(&self) -> Option<&dyn RigidMotion> {
+        match &self.carrier {
+            Carrier::World => None,
+            Carrier::Motion(motion) => Some(*motion),
+            Carrier::Frame { outer, .. } => Some(*outer),
+            Carrier::Joints { first, .. } => Some(first),
+        }
+    }
+
     fn carry(&self, time: f64, normal: DVec3, [a, b]: [DVec3; 2]) -> Result<[DVec3; 3], QueryError> {
-        let frame = match &self.carrier {
-            Carrier::World => return Ok([normal, a, b]),
-            Carrier::Motion(motion) => frame_of(*motion, time),
-            Carrier::Frame { outer, .. } => frame_of(*outer, time),
-            Carrier::Joints { first, .. } => frame_of(first, time),
-        };
+        let Some(carrier) = self.motion() else { return Ok([normal, a, b]) };
         // Both bodies have no pose then.
-        let frame = frame.ok_or(QueryError::BadMotion { body: 0 })?;
+        let frame = frame_of(carrier, time).ok_or(QueryError::BadMotion { body: 0 })?;
         Ok([frame.transform_vector(normal), frame.transform_point(a), frame.transform_point(b)])
     }
 }
