@@ -115,8 +115,7 @@ pub enum Mass {
 
 /// A body to be added to a [`Simulation`](crate::Simulation).
 ///
-/// Default: dynamic, mesh frame = world frame, at rest, density 1000, no restitution, no friction; solid if its mesh is
-/// watertight.
+/// Default: dynamic, mesh frame = world frame, at rest, density 1000, no restitution, no friction; solid if its mesh is watertight.
 ///
 /// ```
 /// use d2m_bvh::MeshTree;

@@ -37,8 +37,7 @@ impl<'m> Part<'m> {
 }
 
 impl Body {
-    /// A body of several closed meshes that are held together, with the mass of them all. Parts may overlap: each has its own mass
-    /// nevertheless.
+    /// A body of several closed meshes that are held together, with the mass of them all. Parts may overlap: each has its own mass nevertheless.
     ///
     /// The body is one mesh with the vertices of all parts, placed; what is certified is certified of these.
     ///

@@ -10,8 +10,7 @@ pub(crate) fn cavity(tree: &MeshTree, center: DVec3) -> f64 {
     lower_bound(&MeshTree::new(point), tree).unwrap_or(0.0)
 }
 
-/// How near the body's surface is to each of the lines through its center along the axes of the mesh, so far each way; zero where that
-/// does not show.
+/// How near the body's surface is to each of the lines through its center along the axes of the mesh, so far each way; zero where that does not show.
 pub(crate) fn bores(tree: &MeshTree, center: DVec3, reach: f64) -> [f64; 3] {
     DVec3::AXES.map(|axis| free(tree, [center - axis * reach, center + axis * reach]))
 }

@@ -4,8 +4,7 @@ use crate::joint_rows::Joined;
 use crate::{Joint, Motor, Simulation, SimulationError};
 
 impl Simulation {
-    /// Joins two bodies, or one with the world, where they are; the pair is ignored unless the joint says otherwise. The number of the
-    /// joint.
+    /// Joins two bodies, or one with the world, where they are; the pair is ignored unless the joint says otherwise. The number of the joint.
     ///
     /// ```
     /// use d2m_bvh::MeshTree;

@@ -15,8 +15,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`SimulationError::Intersecting`] if it would intersect a body that it meets there (it may touch it, up to rounding);
-    /// [`SimulationError::BadBody`] of numbers that cannot be used, and of a body that follows its motion or its targets. Nothing changes
-    /// then.
+    /// [`SimulationError::BadBody`] of numbers that cannot be used, and of a body that follows its motion or its targets. Nothing changes then.
     ///
     /// # Panics
     /// If the body was removed.
@@ -383,8 +382,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Restitution and friction of a pair: those of [`Self::set_pair`], else the greater restitution and the mean friction of the
-    /// two bodies.
+    /// Restitution and friction of a pair: those of [`Self::set_pair`], else the greater restitution and the mean friction of the two bodies.
     ///
     /// # Panics
     /// If one of them was removed.

@@ -40,8 +40,7 @@ pub(crate) struct Measured {
     pub(crate) normal: Option<DVec3>,
 }
 
-/// The closest features of two bodies within `margin` at a time of their flights; `pair` numbers the bodies, `before` are the contacts that they
-/// had.
+/// The closest features of two bodies within `margin` at a time of their flights; `pair` numbers the bodies, `before` are the contacts that they had.
 pub(crate) fn measure(
     bodies: &[RigidBody],
     pair: (usize, usize),

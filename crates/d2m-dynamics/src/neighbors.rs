@@ -26,8 +26,7 @@ pub(crate) struct Neighbors {
 
 /// Encloses the body at all times of its flight from its state's time to `end`, grown by `margin`.
 ///
-/// The center moves on a straight line and no point is further from it than the radius. What stands still has the same box whenever
-/// it is computed.
+/// The center moves on a straight line and no point is further from it than the radius. What stands still has the same box whenever it is computed.
 fn swept(body: &RigidBody, end: f64, margin: f64) -> Aabb {
     if body.stands_still() {
         return posed(body, body.flight.reference_time(), margin);

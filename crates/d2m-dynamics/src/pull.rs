@@ -21,8 +21,7 @@ use std::borrow::Cow;
 
 /// The factor of the module's G: twice what forces turn back until the end of a flight, as they may be twice as large then.
 const BRAKING: f64 = 2.0;
-/// The s of the module from which on bodies are braked: half of the mean of two directions of which each could be at 1, and each is stable
-/// until 4.
+/// The s of the module from which on bodies are braked: half of the mean of two directions of which each could be at 1, and each is stable until 4.
 const FAST: f64 = 0.5;
 
 /// The ways' rows of each joint, which stand one after the other.

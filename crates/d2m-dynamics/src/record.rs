@@ -151,8 +151,7 @@ impl Segment {
     }
 }
 
-/// The segments as they become complete. One is kept back: impulses at the start of a step belong to the segment that ends
-/// there.
+/// The segments as they become complete. One is kept back: impulses at the start of a step belong to the segment that ends there.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Recorder {
     done: Vec<Segment>,

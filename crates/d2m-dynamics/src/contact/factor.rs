@@ -2,9 +2,9 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
-use faer::sparse::linalg::cholesky::SymmetricOrdering;
+use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, factorize_symbolic_cholesky,
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
@@ -59,7 +59,11 @@ impl Factor {
         }
         let size = 6 * bodies;
         let pattern = SymbolicSparseColMatRef::new_checked(size, size, &columns, None, &rows);
-        let (order, params) = (SymmetricOrdering::Amd, CholeskySymbolicParams::default());
+        // Dense kernels of supernodes would round as the processor's vectors are wide.
+        let one_by_one = SupernodalThreshold::FORCE_SIMPLICIAL;
+        let params =
+            CholeskySymbolicParams { supernodal_flop_ratio_threshold: one_by_one, ..Default::default() };
+        let order = SymmetricOrdering::Amd;
         let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, order, params).ok()?;
         let needed = symbolic
             .factorize_numeric_llt_scratch::<f64>(Par::Seq, faer::prelude::default())
@@ -132,6 +136,15 @@ impl Factor {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// All bodies share rows with all others: supernodes would be faster there, and round otherwise on each kind of processor.
+    #[test]
+    fn sums_are_added_one_by_one() {
+        use faer::sparse::linalg::cholesky::SymbolicCholeskyRaw;
+        let pairs = (0..40).flat_map(|i| (i + 1..40).map(move |j| [i, j])).collect();
+        let factor = Factor::try_new(40, pairs).unwrap();
+        assert!(matches!(factor.symbolic.raw(), SymbolicCholeskyRaw::Simplicial(_)));
+    }
 
     /// Three bodies in a row and one apart: what is solved gives the right side back.
     #[test]

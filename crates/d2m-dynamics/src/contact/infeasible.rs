@@ -1,8 +1,7 @@
 //! Proofs that no velocities keep contacts apart.
 //!
 //! Contacts at distances d keep apart in a flight of length τ only if their rates are J v + g ≥ −d/τ, with the velocities v of the bodies
-//! that impulses move and the rates g of what follows its motion. By Farkas's lemma there are either such velocities, or multipliers λ ≥ 0
-//! with
+//! that impulses move and the rates g of what follows its motion. By Farkas's lemma there are either such velocities, or multipliers λ ≥ 0 with
 //!
 //! ```text
 //! Jᵀ λ = 0     and     Σ λ (g + d/τ) < 0

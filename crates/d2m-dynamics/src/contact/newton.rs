@@ -28,17 +28,23 @@ pub(super) struct Effort {
     rounds: u32,
     /// Newton steps of one round at most.
     steps: u32,
+    /// Rounds one after the other that gain nothing, after which no other one is tried.
+    losses: u32,
 }
 
 impl Effort {
     /// As exact as it gets.
-    pub(super) const FULL: Self = Self { rounds: 20, steps: 80 };
+    pub(super) const FULL: Self = Self { rounds: 20, steps: 80, losses: 3 };
+    /// Of many bodies that come to rest: in piles side by side many rounds gain nothing before one does.
+    pub(super) const PATIENT: Self = Self { rounds: 25, losses: 5, ..Self::FULL };
+    /// Where all of them may stick already: then rows that get harder find it in four or five rounds.
+    pub(super) const STUCK: Self = Self { rounds: 6, ..Self::FULL };
     /// After sweeps that left too much: with soft rows three or four steps find a round's velocities also where much slides, and
     /// the first rounds gain most.
-    pub(super) const SHORT: Self = Self { rounds: 4, steps: 8 };
+    pub(super) const SHORT: Self = Self { rounds: 4, steps: 8, ..Self::FULL };
 
     fn is_short(self) -> bool {
-        self.rounds < Self::FULL.rounds
+        self.steps < Self::FULL.steps
     }
 }
 
@@ -59,8 +65,6 @@ const YIELDED: f64 = 0.5;
 const MOST_SOFT: f64 = 1e-2;
 /// And with this where there are joints: what their rows yield adds up from step to step.
 const JOINED: f64 = 1e-5;
-/// Rounds one after the other that gain nothing, after which no other one is tried.
-const MOST_LOSSES: u32 = 3;
 /// Of bodies that move, a round that leaves more than this part of the one before is the last one, once what is left is within the tolerance.
 const GAINED: f64 = 1.0 / 16.0;
 /// Of a crowd, a round that leaves more than this of the one before is the last one.
@@ -73,6 +77,8 @@ const INNER: f64 = 0.25;
 /// Where a solution begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Start {
+    /// All contacts stick, and the solution ends where one does not.
+    Stuck,
     /// All contacts that can stick do.
     Sticking,
     /// What slides goes on to slide.
@@ -101,7 +107,7 @@ impl System {
             block.law.friction() * (t * t + u * u).sqrt()
         };
         let shift = match start {
-            Start::Sticking => vec![0.0; self.blocks.len()],
+            Start::Stuck | Start::Sticking => vec![0.0; self.blocks.len()],
             Start::Present => self.blocks.iter().map(|block| slides(block, self)).collect(),
         };
         let mut state = (self.impulses.clone(), shift, self.velocities());
@@ -137,7 +143,7 @@ impl System {
             }
             tolerance = self.tolerance(accuracy);
             aim = if effort.is_short() { self.enough(accuracy) } else { self.aim(accuracy) };
-            let stops = losses == MOST_LOSSES || effort.is_short() && residual > LITTLE * last;
+            let stops = losses == effort.losses || effort.is_short() && residual > LITTLE * last;
             // What moves may leave so much: it is worth a round that gains.
             let is_left = tolerance > accuracy.precision && residual <= tolerance && residual > GAINED * last;
             if residual <= aim || stops || is_left {
@@ -155,6 +161,9 @@ impl System {
                 soft = (HARDER * soft).max(hardest);
                 state = (impulses, shift, velocity);
                 continue;
+            }
+            if start == Start::Stuck {
+                break;
             }
             if !is_found {
                 soft = (SOFTER * soft).min(MOST_SOFT);

@@ -67,8 +67,7 @@ pub(crate) struct ContactPoint {
     pub(crate) is_expected: bool,
     /// The distance that the pair keeps.
     pub(crate) gap: f64,
-    /// From the centers of mass to one point, so that impulses there make no angular momentum: the middle of the closest
-    /// points.
+    /// From the centers of mass to one point, so that impulses there make no angular momentum: the middle of the closest points.
     pub(crate) arm_a: DVec3,
     pub(crate) arm_b: DVec3,
     /// Middle of the closest points.

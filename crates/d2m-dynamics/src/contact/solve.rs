@@ -50,7 +50,7 @@ impl System {
     ///
     /// Few bodies, and masses far apart, are solved directly and exactly; what could stick so that it does. Of crowds sweeps come first, which
     /// cost least, unless they stand in a row. What they leave is solved directly with soft rows, which gains most where most slides; of those about to rest
-    /// exactly. Where that leaves more than the tolerance sweeps are tried again, and the best by the residual is taken.
+    /// exactly, of many first as if nothing slid. Where that leaves more than the tolerance sweeps are tried again, and the best by the residual is taken.
     pub(crate) fn solve(&mut self, targets: &[f64], accuracy: Accuracy, start: Start) -> f64 {
         if self.is_conforming
             && !self.is_crowd()
@@ -102,8 +102,18 @@ impl System {
         }
         // What slips may obey the law as well as what sticks.
         let tolerance = self.tolerance(accuracy);
-        let full = |system: &mut Self| system.solve_direct(targets, accuracy, start, Effort::FULL);
-        residual = self.better(residual, tolerance, full);
+        let is_pile = start == Start::Present && moved > SOME && self.is_calm(accuracy);
+        if is_pile {
+            residual = self.better(residual, tolerance, |system| {
+                system.solve_direct(targets, accuracy, Start::Stuck, Effort::STUCK)
+            });
+            if residual <= self.aim(accuracy) {
+                return residual;
+            }
+        }
+        let effort = if is_pile { Effort::PATIENT } else { Effort::FULL };
+        residual =
+            self.better(residual, tolerance, |system| system.solve_direct(targets, accuracy, start, effort));
         if residual <= self.tolerance(accuracy).max(self.enough(accuracy)) {
             return residual;
         }

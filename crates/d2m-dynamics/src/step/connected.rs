@@ -140,8 +140,7 @@ impl Step<'_> {
         next
     }
 
-    /// Adds bodies, moved to `time` and awake, with their contacts; the bodies that these connect with the group and that are
-    /// none of it yet.
+    /// Adds bodies, moved to `time` and awake, with their contacts; the bodies that these connect with the group and that are none of it yet.
     pub(super) fn admit(
         &mut self,
         group: &mut Group,
@@ -161,8 +160,7 @@ impl Step<'_> {
                 let body = &mut self.sim.bodies[i];
                 let begins = body.time == time;
                 body.advance(time, gravity);
-                // What is left of a flight to the end of the step goes on as it was planned, if that is near enough to what
-                // its own middle needs.
+                // What is left of a flight to the end of the step goes on as it was planned, if that is near enough to what its own middle needs.
                 let body = &self.sim.bodies[i];
                 let goes_on = match occasion {
                     Occasion::Start | Occasion::Plan { .. } => false,
@@ -207,8 +205,7 @@ impl Step<'_> {
         }
         let mut found = map_owned(unknown, FEW_ITEMS, |(key, pair)| {
             let (gap, reach) = pair.map_or((sim.options.gap, 1.0), |pair| (pair.gap, pair.reach));
-            // What is further apart than the present motion leads needs no row; if forces lead there all the same, the
-            // flight ends at an event.
+            // What is further apart than the present motion leads needs no row; if forces lead there all the same, the flight ends at an event.
             let way = reach * APPROACH * sim.bodies[key.0].bound_approach(&sim.bodies[key.1]) * step;
             let margin = (AROUND * sim.options.gap + way).min(most);
             let (a, b) = (&sim.bodies[key.0], &sim.bodies[key.1]);

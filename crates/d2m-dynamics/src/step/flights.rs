@@ -15,8 +15,7 @@ use glam::DVec3;
 use std::cmp::Reverse;
 
 impl Step<'_> {
-    /// When do the flights of these bodies end? Every pair with one of them that may meet until the end of the step is
-    /// queried.
+    /// When do the flights of these bodies end? Every pair with one of them that may meet until the end of the step is queried.
     pub(super) fn query(&mut self, time: f64, changed: &[usize]) -> Result<(), StepError> {
         let end = self.end;
         for &i in changed {

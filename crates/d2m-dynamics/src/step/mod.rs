@@ -281,8 +281,7 @@ impl<'s> Step<'s> {
         }
         self.heap.extend(later.into_iter().map(Reverse));
         let mut seeds: Vec<usize> = met.iter().flat_map(|event| event.bodies).collect();
-        // Flights that were planned to end here end with the event: what is left of them would be a segment far from their
-        // middle.
+        // Flights that were planned to end here end with the event: what is left of them would be a segment far from their middle.
         if let Some(planned) = self.planned.take() {
             let ends = |body: &RigidBody| body.is_dynamic() && !body.held && body.horizon == planned;
             seeds.extend((0..self.sim.bodies.len()).filter(|&i| ends(&self.sim.bodies[i])));

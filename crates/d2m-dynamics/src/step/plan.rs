@@ -17,11 +17,9 @@ const MOST_IN_A_STEP: usize = 256;
 const MOST_OF_A_BODY: usize = 4;
 const MOST_BODIES: usize = 64;
 /// The part of the greatest kinetic energy that a flight's early end may leave unbalanced in the segments (the momenta are right in
-/// any case): a thirty-second of the 1/128 that `docs/guarantees.md` promises, for the flights of one step that are cut one after the
-/// other.
+/// any case): a thirty-second of the 1/128 that `docs/guarantees.md` promises, for the flights of one step that are cut one after the other.
 const UNBALANCED: f64 = 1.0 / 4096.0;
-/// How much later than expected a flight that is planned anew ends, as a part of what it was cut by: the body should meet
-/// what it meets before that.
+/// How much later than expected a flight that is planned anew ends, as a part of what it was cut by: the body should meet what it meets before that.
 const SPARE_TIME: f64 = 0.02;
 
 /// How often flights of this step have been planned anew.

@@ -38,8 +38,7 @@ struct Change {
 }
 
 impl Step<'_> {
-    /// A body that slept moves from `time` on. What has pressed on it at this instant, and is about to be solved again, has pressed on
-    /// what holds it.
+    /// A body that slept moves from `time` on. What has pressed on it at this instant, and is about to be solved again, has pressed on what holds it.
     pub(super) fn wake(&mut self, i: usize, time: f64, occasion: Occasion) {
         let body = &mut self.sim.bodies[i];
         body.wake(time);

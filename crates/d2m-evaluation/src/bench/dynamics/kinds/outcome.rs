@@ -134,7 +134,7 @@ pub(super) fn table(outcomes: &[Outcome]) -> String {
     for outcome in outcomes {
         let Outcome { kind, name, bodies, simulated, seconds, events, skipped, proven, open, faults } =
             outcome;
-        let fault = faults.join("; ").replace(',', ";");
+        let [name, fault] = [name, &faults.join("; ")].map(|text| text.replace(',', ";"));
         let _ = writeln!(
             text,
             "{kind},{name},{bodies},{simulated:?},{seconds:.4},{events},{skipped:?},{proven},{open},{fault}"
@@ -152,7 +152,7 @@ mod tests {
     fn rows_have_a_value_for_each_column() {
         let wrong = Outcome {
             kind: "press",
-            name: "press on 2".into(),
+            name: "press on 2, slow".into(),
             faults: vec!["a, b".into()],
             ..Outcome::default()
         };

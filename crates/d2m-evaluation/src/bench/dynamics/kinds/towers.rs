@@ -52,6 +52,10 @@ pub(super) fn cases(cases: &mut Vec<Case>, seed: u64) {
         let variant = format!("of {rows} rows and {columns} columns");
         cases.push(Case::new("wall", variant, 1.0, move |scene| wall(scene, rows, columns)));
     }
+    for (along, across, high) in [(2, 1, 50), (5, 1, 20), (2, 2, 20), (6, 6, 6)] {
+        let variant = format!("{along} by {across} a gap apart of {high}");
+        cases.push(Case::new("columns", variant, 1.0, move |scene| columns(scene, along, across, high)));
+    }
     for (stones, thickness) in [(5, 0.15), (7, 0.2), (9, 0.15), (15, 0.15), (25, 0.2)] {
         let variant = format!("of {stones} stones {thickness} thick");
         cases.push(Case::new("arch", variant, 2.0, move |scene| arch(scene, stones, thickness, 0.8)));
@@ -192,6 +196,19 @@ fn wall(mut scene: Scene, rows: u32, columns: u32) -> Result<Trial, Error> {
                 scene.add(body.with_position(DVec3::new(x, y, 0.0)))?;
             }
         }
+    }
+    under(scene, vec![stays(CREEP), rests(1e-3)])
+}
+
+/// Boxes on each other in columns a gap apart, as goods on a pallet.
+fn columns(mut scene: Scene, along: u32, across: u32, high: u32) -> Result<Trial, Error> {
+    scene.add(floor(0.0, 0.5)?)?;
+    let shape = cuboid(DVec3::new(0.5, 0.25, 0.5))?;
+    let places = (0..high).flat_map(|y| (0..along).flat_map(move |x| (0..across).map(move |z| [x, y, z])));
+    for at in places {
+        let [x, y, z] = at.map(f64::from);
+        let place = DVec3::new((1.0 + GAP) * x, 0.25 + GAP + (0.5 + GAP) * y, (1.0 + GAP) * z);
+        scene.add(free(format!("box {at:?}"), &shape, 0.5).with_position(place))?;
     }
     under(scene, vec![stays(CREEP), rests(1e-3)])
 }
