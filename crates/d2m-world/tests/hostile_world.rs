@@ -258,3 +258,15 @@ fn what_is_within_the_tolerance_at_the_start_is_in_contact() {
         }
     }
 }
+
+/// The same of needles tip to tip, which their spheres alone would prove apart.
+#[test]
+fn tips_within_the_tolerance_at_the_start_are_in_contact() {
+    let needle = Arc::new(MeshTree::new(d2m_shapes::mesh("needle?aspect=10").unwrap()));
+    let tip = needle.mesh().vertices().iter().fold(0.0f64, |tip, vertex| tip.max(vertex.z));
+    let mut world = World::new(QueryOptions::default().with_tolerance(1e-2));
+    for place in [DVec3::ZERO, DVec3::Z * (2.0 * tip + 0.9e-2)] {
+        world.add(Body::new(Arc::clone(&needle), at(place)));
+    }
+    assert_eq!(meeting(&mut world, Window::UNIT), [[0, 1]]);
+}
