@@ -243,7 +243,9 @@ impl<'a> MovingScene<'a> {
         let (a, b) = (&self.a, &self.b);
         let error = TRIANGLE_ERROR * self.size;
         let to_length = |length: f64| length * (1.0 / self.units.length());
-        let wanted = to_length(options.tolerance_of(a.tree.radius().max(b.tree.radius())));
+        // Of the radius in its own unit: a part of one that is tiny in the scene's unit would be rounded.
+        let radius = to_length(a.tree.radius().max(b.tree.radius()));
+        let wanted = options.tolerance.map_or_else(|| options.tolerance_of(radius), to_length);
         self.tolerance = wanted.max(LEAST_TOLERANCE_ERRORS * error);
         let level = to_length(options.min_separation) + self.tolerance;
         let centripetal = [a, b].map(|body| body.spin() * body.spin() * body.reach() * UP);

@@ -374,8 +374,8 @@ impl World {
     }
 
     /// The pairs that the broad phase cannot exclude, smaller place first, ascending. Every pair that comes within its minimum
-    /// separation during the window, and is not ignored, is among them, and so is every
-    /// pair that is in contact by its tolerance at the start.
+    /// separation during the window, and is not ignored, is among them, and so is every pair that its
+    /// tolerance puts in contact at the start.
     ///
     /// # Errors
     /// A motion that does not cover the window.
