@@ -1,6 +1,4 @@
 //! What is said of a list of numbers: quantiles and fitted exponents.
-use faer::Mat;
-use faer::linalg::solvers::SolveLstsq;
 
 /// Five numbers and the mean, as a box plot shows them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,16 +40,19 @@ fn quantile(sorted: &[f64], q: f64) -> f64 {
     sorted[below] + (sorted[above] - sorted[below]) * rest
 }
 
-/// The exponent e of the power law y = c·xᵉ that fits best in the logarithms (least squares by QR).
+/// The exponent e of the power law y = c·xᵉ that fits best in the logarithms (least squares): their covariance over the variance of ln x.
 pub(crate) fn exponent(points: &[(f64, f64)]) -> Option<f64> {
-    let mut logs = points.iter().filter(|(x, y)| *x > 0.0 && *y > 0.0).map(|(x, y)| [x.ln(), y.ln()]);
-    let logs: Vec<[f64; 2]> = logs.by_ref().collect();
+    let positive = points.iter().filter(|(x, y)| *x > 0.0 && *y > 0.0);
+    let logs: Vec<[f64; 2]> = positive.map(|(x, y)| [x.ln(), y.ln()]).collect();
     if logs.iter().all(|p| p[0] == logs[0][0]) {
         return None;
     }
-    let left = Mat::from_fn(logs.len(), 2, |i, j| if j == 0 { 1.0 } else { logs[i][0] });
-    let right = Mat::from_fn(logs.len(), 1, |i, _| logs[i][1]);
-    Some(left.qr().solve_lstsq(&right)[(1, 0)])
+    let mean = |k: usize| logs.iter().map(|p| p[k]).sum::<f64>() / logs.len() as f64;
+    let [x, y] = [0, 1].map(mean);
+    let [together, alone] = logs.iter().fold([0.0; 2], |[together, alone], p| {
+        [together + (p[0] - x) * (p[1] - y), alone + (p[0] - x) * (p[0] - x)]
+    });
+    Some(together / alone)
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! The convex function of one round of the direct solution ([`super::newton`]), and its minimum by Newton's method with an exact line search.
 
 use super::block::Block;
-use super::factor::{Factor, Square};
-use super::law::{Projected, Slope};
+use super::law::{Law, Projected, Slope};
 use super::system::System;
 use crate::velocity::Velocity;
+use d2m_cholesky::{Factor, Square};
 use glam::{DMat3, DVec3};
 
 /// The slope along a line, of that at its start, with which a search ends.
@@ -210,18 +210,20 @@ impl Convex<'_> {
             a += way.linear.length_squared() / body.inverse_mass + way.angular.dot(inertia * way.angular);
             b += way.linear.dot(off.linear) / body.inverse_mass + way.angular.dot(inertia * off.angular);
         }
-        let lines: Vec<(usize, [f64; 3], [f64; 3])> = (0..self.system.blocks.len())
-            .filter(|&k| self.counts(k))
-            .map(|k| {
-                let block = &self.system.blocks[k];
-                (k, block.rates(|i| self.velocity[i]), block.changes(|i| ways[i]))
-            })
-            .collect();
+        // Of each block its law, y, what is added to that, and to the rates.
+        let line = |k: usize| {
+            let block = &self.system.blocks[k];
+            let (y, added) =
+                (self.argument(k, block.rates(|i| self.velocity[i])), block.changes(|i| ways[i]));
+            let (_, soft) = self.center_of(k, block);
+            (&block.law, y, added.map(|x| -x / soft), added)
+        };
+        let lines: Vec<(&Law, [f64; 3], [f64; 3], [f64; 3])> =
+            (0..self.system.blocks.len()).filter(|&k| self.counts(k)).map(line).collect();
         let slope = |s: f64| {
             let mut slope = b + s * a;
-            for (k, rates, added) in &lines {
-                let y = self.argument(*k, [0, 1, 2].map(|i| rates[i] + s * added[i]));
-                let impulse = self.system.blocks[*k].law.project(y);
+            for (law, y, moved, added) in &lines {
+                let impulse = law.project([0, 1, 2].map(|i| y[i] + s * moved[i]));
                 slope -= (0..3).map(|i| impulse[i] * added[i]).sum::<f64>();
             }
             slope

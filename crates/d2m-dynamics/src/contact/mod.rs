@@ -6,7 +6,6 @@ mod block;
 mod chosen;
 mod common_turn;
 mod convex;
-mod factor;
 mod impact;
 mod infeasible;
 mod lanes;

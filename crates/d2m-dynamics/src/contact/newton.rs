@@ -15,10 +15,10 @@ use super::accuracy::Accuracy;
 use super::anderson::Anderson;
 use super::block::Block;
 use super::convex::Convex;
-use super::factor::Factor;
 use super::law::Projected;
 use super::solver_body::SolverBody;
 use super::system::System;
+use d2m_cholesky::Factor;
 use glam::DMat3;
 
 /// How much a direct solution may cost.
@@ -94,14 +94,19 @@ impl System {
         start: Start,
         effort: Effort,
     ) -> f64 {
-        let (places, count) = self.moved_places();
+        let (places, count) = self.moved_places(targets);
         let Some(mut factor) = self.take_factor(&places, count) else { return self.residual(targets) };
         let free = self.free();
         let inertia: Vec<DMat3> = self.bodies.iter().map(inertia_of).collect();
         let begun = (self.residual(targets), self.impulses.clone());
         let mut best: Option<(f64, Vec<[f64; 3]>)> = None;
         let mut tolerance = self.tolerance(accuracy);
-        let mut aim = if effort.is_short() { self.enough(accuracy) } else { self.aim(accuracy) };
+        let aim_of = |of: &Self| match effort.is_short() {
+            true => of.enough(accuracy),
+            false if of.is_uneven_crowd(accuracy) => of.left(accuracy),
+            false => of.aim(accuracy),
+        };
+        let mut aim = aim_of(self);
         let slides = |block: &Block, of: &System| {
             let [_, t, u] = block.rates(|i| of.bodies[i].velocity);
             block.law.friction() * (t * t + u * u).sqrt()
@@ -142,7 +147,7 @@ impl System {
                 losses = 0;
             }
             tolerance = self.tolerance(accuracy);
-            aim = if effort.is_short() { self.enough(accuracy) } else { self.aim(accuracy) };
+            aim = aim_of(self);
             let stops = losses == effort.losses || effort.is_short() && residual > LITTLE * last;
             // What moves may leave so much: it is worth a round that gains.
             let is_left = tolerance > accuracy.precision && residual <= tolerance && residual > GAINED * last;
@@ -181,7 +186,7 @@ impl System {
     /// Multipliers of frictionless contacts with rows so hard that they hardly yield, of bodies without other impulses: where no velocities obey
     /// the targets, those that violate them least. None: they are not found.
     pub(super) fn press_hard(mut self, targets: &[f64], fastest: f64) -> Option<Vec<f64>> {
-        let (places, count) = self.moved_places();
+        let (places, count) = self.moved_places(targets);
         let mut factor = self.take_factor(&places, count)?;
         let free = self.velocities();
         let inertia: Vec<DMat3> = self.bodies.iter().map(inertia_of).collect();
@@ -202,11 +207,15 @@ impl System {
         Some(round.found.iter().map(|found| found.impulse[0]).collect())
     }
 
-    /// The places of moved bodies among these, and how many there are.
-    fn moved_places(&self) -> (Vec<Option<usize>>, usize) {
+    /// The places among each other of the bodies that move and that these targets ask something of, and how many there are.
+    fn moved_places(&self, targets: &[f64]) -> (Vec<Option<usize>>, usize) {
+        let mut is_asked = vec![false; self.bodies.len()];
+        for (block, _) in self.blocks.iter().zip(targets).filter(|(_, target)| **target > f64::NEG_INFINITY) {
+            (is_asked[block.a], is_asked[block.b]) = (true, true);
+        }
         let mut count = 0;
         let place = |body: usize| {
-            self.is_moved(body).then(|| {
+            (is_asked[body] && self.is_moved(body)).then(|| {
                 count += 1;
                 count - 1
             })
@@ -260,6 +269,16 @@ mod tests {
         still: None,
         beside_sleepers: false,
     };
+
+    /// Of ten in a column, of which only the lowest two are asked to keep apart, those two have places.
+    #[test]
+    fn what_is_asked_nothing_has_no_place() {
+        let mut targets = [f64::NEG_INFINITY; 10];
+        targets[1] = 0.0;
+        let (places, count) = column(10, 0.0).moved_places(&targets);
+        assert_eq!((places.iter().flatten().count(), count), (2, 2));
+        assert_eq!(column(10, 0.0).moved_places(&[0.0; 10]).1, 10);
+    }
 
     /// In one round soft rows of a column yield by far more than that under all that lies on them.
     #[test]

@@ -2,11 +2,11 @@
 
 use super::ContactPoint;
 use super::block::Block;
-use super::factor::Factor;
 use super::lanes::{Numbers, Wide};
 use super::law::Law;
 use super::solver_body::SolverBody;
 use crate::velocity::Velocity;
+use d2m_cholesky::Factor;
 use glam::{DMat3, DVec3};
 
 /// Contacts between bodies: the impulses that they have, and the velocities with these.
