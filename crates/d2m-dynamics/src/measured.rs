@@ -69,10 +69,19 @@ pub(crate) fn measure(
     let mut normals: Vec<DVec3> = exact.map(|p| flatten(p).unwrap_or(*p).normal).collect();
     normals.sort_by(|a, b| order(*a, *b));
     normals.dedup();
+    // In the order of their first coordinates: the others are further off than that.
+    let beside = |x: f64| {
+        let [from, to] = [x - TILT, x + TILT].map(|end| normals.partition_point(|normal| normal.x < end));
+        &normals[from..to]
+    };
     let straight = |p: &Proximity| {
         // Two edges whose common normal is outside of their cones would push askew: where faces are almost parallel they
         // get the normal of a locally closest pair. Without one they are no contact.
-        if is_edges(p) && p.tilt > 0.0 { along(p, &normals, TILT) } else { Some(flatten(p).unwrap_or(*p)) }
+        if is_edges(p) && p.tilt > 0.0 {
+            along(p, beside(p.normal.x), TILT)
+        } else {
+            Some(flatten(p).unwrap_or(*p))
+        }
     };
     let found: Vec<Proximity> = wide.iter().filter_map(straight).collect();
     let chosen = reduce_proximities(&found, TILT);
