@@ -101,10 +101,9 @@ impl System {
         let begun = (self.residual(targets), self.impulses.clone());
         let mut best: Option<(f64, Vec<[f64; 3]>)> = None;
         let mut tolerance = self.tolerance(accuracy);
-        let aim_of = |of: &Self| match effort.is_short() {
-            true => of.enough(accuracy),
-            false if of.is_uneven_crowd(accuracy) => of.left(accuracy),
-            false => of.aim(accuracy),
+        let aim_of = |of: &Self| {
+            let is_rough = effort.is_short() || of.is_uneven_crowd(accuracy);
+            if is_rough { of.enough(accuracy) } else { of.aim(accuracy) }
         };
         let mut aim = aim_of(self);
         let slides = |block: &Block, of: &System| {

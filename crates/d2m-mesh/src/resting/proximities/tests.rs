@@ -320,6 +320,19 @@ fn a_corner_over_a_rim_is_found_once() {
         let straight = near.iter().filter(corner).filter(|p| p.tilt < 1e-12).count();
         assert!(straight >= 2, "{k}: {near:?}");
     }
+    // Of one that lies on all of the other, a little aside, corners are outside of the rim by less than the cones let in.
+    for off in [DVec3::X, DVec3::Z, DVec3::new(1.0, 0.0, 1.0), DVec3::new(-1.0, 0.0, 1.0)] {
+        for by in [1e-4, 1e-5, 1e-6] {
+            let pose = Pose { translation: DVec3::Y * 1.001 + off * by, ..Pose::IDENTITY };
+            let options = ProximityOptions::new(1.5e-3).with_cone_slack(0.1);
+            let near =
+                proximities_with(crate::Posed::at_rest(&cube), crate::Posed::new(&cube, pose), &options);
+            let near = near.unwrap();
+            let is_double =
+                |p: &Proximity| near.iter().filter(|other| other.feature == p.feature).count() > 1;
+            assert!(near.len() >= 4 && !near.iter().any(is_double), "{off} {by}: {near:?}");
+        }
+    }
 }
 
 /// Bodies whose margin is their size: cones of normals drop most pairs of boxes and nothing that is found without them. (Wider normal
