@@ -48,7 +48,7 @@ impl System {
     /// Finds impulses with which the rates of all contacts obey the law, above the targets; the residual that is left. Begins with the
     /// impulses that there are.
     ///
-    /// Few bodies, and masses far apart, are solved directly and exactly; what could stick so that it does. Of crowds sweeps come first, which
+    /// Few bodies, and masses far apart, are solved directly and exactly, many such bodies that move as well as others; what could stick so that it does. Of crowds sweeps come first, which
     /// cost least, unless they stand in a row. What they leave is solved directly with soft rows, which gains most where most slides; of those about to rest
     /// exactly, of many first as if nothing slid. Where that leaves more than the tolerance sweeps are tried again, and the best by the residual is taken.
     pub(crate) fn solve(&mut self, targets: &[f64], accuracy: Accuracy, start: Start) -> f64 {
