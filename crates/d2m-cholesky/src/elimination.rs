@@ -10,7 +10,9 @@ pub(crate) fn eliminate(bodies: usize, pairs: &[[usize; 2]]) -> Vec<(usize, Vec<
         neighbors[i].push(j);
         neighbors[j].push(i);
     }
-    neighbors.iter_mut().for_each(|list| list.sort_unstable());
+    for list in &mut neighbors {
+        list.sort_unstable();
+    }
     let mut waiting: BTreeSet<(usize, usize)> =
         neighbors.iter().enumerate().map(|(body, list)| (list.len(), body)).collect();
     let mut columns = Vec::with_capacity(bodies);
@@ -20,7 +22,7 @@ pub(crate) fn eliminate(bodies: usize, pairs: &[[usize; 2]]) -> Vec<(usize, Vec<
             let list = &mut neighbors[other];
             waiting.remove(&(list.len(), other));
             list.extend(&own);
-            list.sort();
+            list.sort_unstable();
             list.dedup();
             list.retain(|&one| one != body && one != other);
             waiting.insert((list.len(), other));

@@ -1,5 +1,8 @@
 //! The matrix, its factor and its solutions.
 
+// Rows and columns are counted alike in all of it.
+#![allow(clippy::needless_range_loop)]
+
 use crate::elimination::eliminate;
 use d2m_lanes::{InstructionSet, Lanes, Task, run_on};
 
@@ -202,7 +205,9 @@ fn factorize(starts: &[usize], rows: &[usize], squares: &mut [Square]) -> bool {
         if !root(own) {
             return false;
         }
-        below.iter_mut().for_each(|square| divide(square, own));
+        for square in &mut *below {
+            divide(square, own);
+        }
         let below_rows = &rows[all[0] + 1..all[1]];
         for (k, column) in below_rows.iter().enumerate() {
             // What a column holds is in that of each of its rows: both ascend.
@@ -360,8 +365,12 @@ mod tests {
             let square = |i: usize, j: usize| -> Square {
                 core::array::from_fn(|r| core::array::from_fn(|c| dense[6 * i + r][6 * j + c]))
             };
-            (0..37).for_each(|i| factor.add(i, &square(i, i)));
-            pairs.iter().for_each(|&[i, j]| assert!(factor.add_between(i, j, &square(i, j))));
+            for i in 0..37 {
+                factor.add(i, &square(i, i));
+            }
+            for &[i, j] in &pairs {
+                assert!(factor.add_between(i, j, &square(i, j)));
+            }
             let mut right: Vec<f64> = (0..222).map(|i| f64::from(i) - 100.5).collect();
             assert!(factor.solve_on(set, &mut right));
             right.iter().map(|x| x.to_bits()).collect::<Vec<_>>()
@@ -385,7 +394,9 @@ mod tests {
             let mut right = [1.0; 12];
             assert!(!factor.solve(&mut right) && right == [1.0; 12], "{x}");
             factor.clear();
-            (0..2).for_each(|body| factor.add(body, &diagonal(4.0)));
+            for body in 0..2 {
+                factor.add(body, &diagonal(4.0));
+            }
             assert!(factor.solve(&mut right) && right == [0.25; 12]);
         }
     }
