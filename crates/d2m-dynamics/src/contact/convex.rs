@@ -1,7 +1,7 @@
 //! The convex function of one round of the direct solution ([`super::newton`]), and its minimum by Newton's method with an exact line search.
 
 use super::block::Block;
-use super::law::{Law, Projected, Slope};
+use super::law::{Projected, Slope};
 use super::system::System;
 use crate::velocity::Velocity;
 use d2m_cholesky::{Factor, Square};
@@ -218,8 +218,8 @@ impl Convex<'_> {
             let (_, soft) = self.center_of(k, block);
             (&block.law, y, added.map(|x| -x / soft), added)
         };
-        let lines: Vec<(&Law, [f64; 3], [f64; 3], [f64; 3])> =
-            (0..self.system.blocks.len()).filter(|&k| self.counts(k)).map(line).collect();
+        let counted = (0..self.system.blocks.len()).filter(|&k| self.counts(k));
+        let lines: Vec<_> = counted.map(line).collect();
         let slope = |s: f64| {
             let mut slope = b + s * a;
             for (law, y, moved, added) in &lines {
