@@ -103,8 +103,10 @@ impl Attempt {
         }
         let (begun, before) = (self.system.present(), self.system.doubled_energy(inertia));
         let could_last = self.may_last();
-        // What is left against the speed of a lift may be more than the closest contacts have: then as exactly as of bodies at rest.
+        // What is left against the speed of a lift may be more than the closest contacts have: then as exactly as of bodies at rest, from the same
+        // beginning, since no round gains anything on a solution that is as good as it was to be.
         for relative in [self.accuracy.relative, 0.0] {
+            self.system.take_back(begun.clone());
             let accuracy = Accuracy { relative, ..self.accuracy };
             self.system.solve(&self.found.targets, accuracy, Start::Present);
             if !could_last || self.lasts(|_| 0.0) {

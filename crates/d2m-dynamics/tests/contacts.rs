@@ -102,26 +102,23 @@ fn light_boxes_under_a_heavy_one_are_not_thrown() {
     }
 }
 
-/// Of cubes under one 10⁶ times as heavy some touch, and part by most of the gap, nearly all of them by all of it, and some keep a hundred-thousandth
-/// of it: what solutions leave of the lift is less than these have. Where it was not, nothing parted, until hardly anything was left and
-/// time was given up.
+/// Of cubes under one 10⁶ times as heavy some touch, and part to the gap, and some keep a hundred-thousandth of it: what solutions leave of the lift
+/// is less than these have. Where it was not, nothing parted, until hardly anything was left and time was given up.
 #[test]
 fn stacks_of_which_some_touch_part_to_the_gap() {
-    let mut whole = 0;
-    for (touching, mut seed) in
-        [[0, 3], [2, 5], [5, 6], [1, 4]].into_iter().flat_map(|t| [3, 4, 5].map(|k| (t, k)))
-    {
+    let scenes = [[0, 3], [2, 5], [5, 6], [1, 4], [3, 5]]
+        .into_iter()
+        .flat_map(|touching| [3, 4, 5].map(|seed| (touching, seed)));
+    for (touching, mut seed) in scenes {
         let mut apart = [1e-9; 8];
         for k in touching {
             apart[k] = 0.0;
         }
         let mut simulation = unlike(1e-2, 7, 1e6, &apart, &mut seed);
+        let height = |simulation: &Simulation| simulation.position(simulation.ids().last().unwrap()).y - 7.5;
         assert_eq!(run(&mut simulation, 0.3).skipped, 0.0, "{touching:?}");
-        let height = simulation.position(simulation.ids().last().unwrap()).y - 7.5;
-        assert!(height > 0.012 && height < 0.021, "{touching:?}: {height}");
-        whole += u32::from(height > 0.019);
+        assert!((height(&simulation) - 0.02).abs() < 1e-3, "{touching:?}: {}", height(&simulation));
     }
-    assert!(whole >= 9, "{whole} of 12");
 }
 
 /// Thirty boxes on each other neither move nor gain energy; the residual says how exactly that is solved.

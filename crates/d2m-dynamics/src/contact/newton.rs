@@ -36,7 +36,7 @@ impl Effort {
     /// As exact as it gets.
     pub(super) const FULL: Self = Self { rounds: 20, steps: 80, losses: 3 };
     /// Of many bodies that come to rest: in piles side by side many rounds gain nothing before one does.
-    pub(super) const PATIENT: Self = Self { rounds: 25, losses: 5, ..Self::FULL };
+    pub(super) const PATIENT: Self = Self { rounds: 35, losses: 7, ..Self::FULL };
     /// Where all of them may stick already: then rows that get harder find it in four or five rounds.
     pub(super) const STUCK: Self = Self { rounds: 6, ..Self::FULL };
     /// After sweeps that left too much: with soft rows three or four steps find a round's velocities also where much slides, and
