@@ -15,8 +15,8 @@ use std::sync::Arc;
 ///
 /// `Mesh(vertices, faces)` takes arrays of shape (n, 3) and (m, 3): vertices of any float type (rounded to the nearest
 /// double) or whole type, faces of any whole type. `Mesh(mesh)` takes an object with `vertices` and `faces`, such as one of trimesh,
-/// and `Mesh(path)` a file (.obj, .stl, .ply, .d2mtree) or an embedded shape such as "shape:bunny-like" (`shapes()` lists
-/// them). Lengths are in any unit. Open meshes, soups, degenerate and duplicate triangles are fine.
+/// and `Mesh(path)` a file (.obj, .off, .stl, .ply, .gltf, .glb, .dae, .3mf, .d2mtree) or an embedded shape such as "shape:torus"
+/// (`shapes()` lists them). Lengths are in any unit. Open meshes, soups, degenerate and duplicate triangles are fine.
 ///
 /// Raises `InputError` with index and value: no triangles, a coordinate that is not finite or beyond 1e60, an index out of
 /// range, another shape or dtype, a whole number that is no double.

@@ -91,6 +91,11 @@ impl Modules {
             findings
                 .push(format!("{name}: {} is missing in the order of ARCHITECTURE.md", module.join("::")));
         }
+        let is_module = |listed: &str| self.0.keys().any(|module| module.join("::") == listed);
+        for listed in order.iter().flat_map(|group| group.split(TOGETHER)).filter(|listed| !is_module(listed))
+        {
+            findings.push(format!("{name}: {listed} in the order of ARCHITECTURE.md is no module"));
+        }
         for (from, to) in arrows.iter().flat_map(|(from, all)| all.iter().map(move |to| (from, to))) {
             if place(order, from).zip(place(order, to)).is_some_and(|(own, other)| other > own) {
                 findings.push(format!(

@@ -6,6 +6,8 @@ const GUIDE: &str = "docs/guide";
 const SUMMARY: &str = "docs/guide/SUMMARY.md";
 /// Where the blocks of the pages are compiled and run.
 const TESTS: &str = "crates/d2m-guide/src/lib.rs";
+/// What was done, with the names that files had then.
+const HISTORY: [&str; 3] = ["docs/changes.md", "docs/experiments.md", "docs/results/mutants.md"];
 
 /// One finding for each page that is not listed or not tested, and for each link that leads nowhere.
 pub(super) fn check(root: &Path) -> Result<Vec<String>, Box<dyn std::error::Error>> {
@@ -31,6 +33,10 @@ pub(super) fn check(root: &Path) -> Result<Vec<String>, Box<dyn std::error::Erro
         let lost = links(&text).filter(|link| !folder.join(link).exists());
         let name = page.strip_prefix(root).unwrap_or(&page).display();
         findings.extend(lost.map(|link| format!("{name}: {link} does not exist")));
+        if !HISTORY.iter().any(|past| page.ends_with(past)) {
+            let lost = sources(&text).filter(|path| !root.join(path).exists());
+            findings.extend(lost.map(|path| format!("{name}: {path} does not exist")));
+        }
     }
     findings.sort();
     Ok(findings)
@@ -62,9 +68,23 @@ fn links(text: &str) -> impl Iterator<Item = &str> {
     files.filter(|link| !link.is_empty() && !link.contains(':') && (link.contains('/') || link.contains('.')))
 }
 
+/// The files of source that a document names from the root of the repository, as `crates/d2m-motion/src/spline.rs`.
+fn sources(text: &str) -> impl Iterator<Item = &str> {
+    let named = text.split('`').filter_map(|code| code.split("::").next());
+    named.filter(|path| {
+        path.starts_with("crates/") && path.ends_with(".rs") && !path.contains(['*', '<', '{', ' '])
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn files_of_source_are_seen() {
+        let text = "in `crates/a/src/b.rs::c` and `crates/a/src/{b,d}.rs`, `mod.rs`,\n`crates/e.rs`";
+        assert_eq!(sources(text).collect::<Vec<_>>(), ["crates/a/src/b.rs", "crates/e.rs"]);
+    }
 
     #[test]
     fn links_to_files_are_seen() {

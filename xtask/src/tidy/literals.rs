@@ -5,14 +5,18 @@ use std::fs;
 use std::path::Path;
 
 /// Crates of which an answer can depend on a small number.
-const CERTIFIED: [&str; 7] = [
+const CERTIFIED: [&str; 11] = [
     "crates/d2m-lanes/src/",
     "crates/d2m-interval/src/",
     "crates/d2m-motion/src/",
     "crates/d2m-root/src/",
     "crates/d2m-feature/src/",
+    "crates/d2m-mesh/src/",
     "crates/d2m-bvh/src/",
+    "crates/d2m-verify/src/",
     "crates/d2m-world/src/",
+    "crates/d2m-robot/src/",
+    "crates/d2m/src/",
 ];
 
 /// One finding for each line of certified code that holds such a number.
@@ -36,12 +40,20 @@ fn is_test(name: &str) -> bool {
     name.ends_with("tests.rs") || proves_nothing.iter().any(|part| name.contains(part))
 }
 
-/// Number and code of each line, before the tests of a file, that holds a small literal and defines no constant.
+/// Number and code of each line, outside the tests of a file, that holds a small literal and defines no constant.
 fn unnamed(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut in_constant = false;
+    let mut in_tests = false;
     text.lines()
-        .take_while(|line| !line.starts_with("#[cfg(test)]"))
         .enumerate()
+        .filter(move |(_, line)| {
+            // The item that follows ends with the first line that begins with no space, and that no other one follows.
+            let ends = line.starts_with('}')
+                || (line.starts_with(|c: char| c.is_alphabetic()) && line.ends_with(';'));
+            let is_tests = in_tests || line.starts_with("#[cfg(test)]");
+            in_tests = is_tests && !ends;
+            !is_tests
+        })
         .map(|(index, line)| (index + 1, line.split("//").next().unwrap_or_default().trim()))
         .filter(move |(_, code)| {
             // A table of constants may have many lines.
@@ -77,6 +89,12 @@ mod tests {
         assert_eq!(
             lines("let x = 1;\n#[cfg(test)]\nmod tests { const X: f64 = f(1e-3); let y = 1e-3; }"),
             [0; 0]
+        );
+        assert_eq!(
+            lines(
+                "#[cfg(test)]\nmod tests;\nlet x = 1e-3;\n#[cfg(test)]\nmod more {\n    let y = 1e-3;\n}\nlet z = 1e-3;"
+            ),
+            [3, 8]
         );
     }
 }

@@ -8,13 +8,15 @@ mod literals;
 mod map;
 mod packages;
 mod sources;
+mod top;
 
 use crate::{TaskResult, workspace_root};
 
 /// Prints every disagreement; an error when there is one.
 pub(crate) fn run() -> TaskResult {
     let root = workspace_root();
-    let mut findings = map::check(&root)?;
+    let mut findings = top::check(&root)?;
+    findings.extend(map::check(&root)?);
     findings.extend(arrows::check(&root)?);
     findings.extend(sources::check(&root)?);
     findings.extend(crate::lines::check(&root)?);
