@@ -29,74 +29,37 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
-mod account;
 mod advance;
-mod attempt;
 mod body;
-mod body_state;
-mod clearance;
-mod compound;
-#[cfg(feature = "audit")]
-mod concluded;
 mod contact;
 #[cfg(test)]
 mod drawn;
-mod ends;
 mod error;
 mod flight;
-mod flight_length;
-mod frozen;
-mod gained;
-mod group;
-mod held;
-mod hollow;
-mod inherited;
 mod joint;
-mod joint_rows;
-mod joints;
-mod kinematic;
 mod listener;
 mod live;
-mod measured;
-mod membership;
-mod momenta;
-mod neighbors;
-mod nested;
 mod numbers;
 mod options;
-mod pair_state;
 mod pairs;
-mod parts;
-mod problem;
-mod pull;
-mod pushed;
-mod quiet;
-mod rebuilt;
 mod record;
-mod rigid_body;
+mod rest;
 mod shown;
 mod simulation;
-mod sleep;
 mod snapshot;
-mod solved_body;
-mod start;
 mod step;
-mod taut;
-mod touches;
-mod turning;
-mod velocity;
 
-pub use body::{Body, BodyId, Damping, Groups, Kind, Mass, Motion, Presence};
-pub use compound::Part;
+pub use body::compound::Part;
+pub use body::description::{Body, BodyId, Damping, Groups, Kind, Mass, Motion, Presence};
 pub use contact::Material;
 #[doc(inline)]
 pub use d2m_mesh::{MassError, MassProperties};
 pub use error::{SimulationError, StepError};
-pub use frozen::{Frozen, RayAnswer, RayError};
 pub use glam;
-pub use joint::{Joint, JointKind, Motor, MotorTarget, Spring};
+pub use joint::description::{Joint, JointKind, Motor, MotorTarget, Spring};
 pub use listener::ContactListener;
+pub use live::frozen::{Frozen, RayAnswer, RayError};
 pub use options::SimulationOptions;
 pub use record::{ContactImpulse, Segment, TouchChange, TouchEvent};
 pub use simulation::{Simulation, StepReport};
-pub use snapshot::Snapshot;
+pub use snapshot::state::Snapshot;

@@ -1,12 +1,12 @@
 //! The simulation: bodies, settings, time.
 
+use crate::body::rigid_body::{RigidBody, Role};
 use crate::contact::{ContactPoint, Material};
-use crate::joint_rows::Joined;
-use crate::neighbors::Neighbors;
+use crate::joint::rows::Joined;
 use crate::numbers::LARGEST;
-use crate::pairs::Pair;
+use crate::pairs::known::Pair;
+use crate::pairs::neighbors::Neighbors;
 use crate::record::Recorder;
-use crate::rigid_body::{RigidBody, Role};
 use crate::{
     Body, BodyId, ContactImpulse, Kind, MassProperties, Segment, SimulationError, SimulationOptions,
     TouchEvent,

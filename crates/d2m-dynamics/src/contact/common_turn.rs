@@ -1,7 +1,7 @@
 //! What turns with what it lies on, as on a turntable.
 
 use super::ContactPoint;
-use crate::velocity::Velocity;
+use crate::body::velocity::Velocity;
 use glam::{DQuat, DVec3};
 
 /// What surfaces that run add to the rates along a contact's tangents, with what these are in the middle of a flight of this length, where both bodies

@@ -3,7 +3,7 @@
 use super::accuracy::{Accuracy, Company};
 use super::newton::Start;
 use super::{ContactPoint, System};
-use crate::velocity::Velocity;
+use crate::body::velocity::Velocity;
 use glam::DMat3;
 
 /// Rounds of impacts that are passed on at one time.

@@ -43,7 +43,7 @@
 //! least 1/5 after a turn of 1/32, it is less than ten times the sum: [`LEVER`].
 
 use super::{ContactPoint, SolverBody, System};
-use crate::velocity::Velocity;
+use crate::body::velocity::Velocity;
 use d2m_feature::FeaturePair;
 use d2m_interval::{Interval, IntervalVec3};
 use glam::DMat3;

@@ -255,8 +255,8 @@ mod tests {
     use super::super::point::{Material, upright};
     use super::super::sweeps::tests::column;
     use super::*;
+    use crate::body::velocity::Velocity;
     use crate::contact::Company;
-    use crate::velocity::Velocity;
     use glam::DVec3;
 
     const EXACT: Accuracy = Accuracy {

@@ -1,8 +1,8 @@
 //! A contact point with its impulse.
 
 use super::law::Law;
-use crate::momenta::Momenta;
-use crate::velocity::Velocity;
+use crate::body::momenta::Momenta;
+use crate::body::velocity::Velocity;
 use d2m_feature::FeaturePair;
 use glam::DVec3;
 

@@ -1,7 +1,7 @@
 //! Which contacts the velocities of a flight have to heed, and how.
 
 use super::{ContactPoint, SolverBody};
-use crate::velocity::Velocity;
+use crate::body::velocity::Velocity;
 use d2m_feature::FeaturePair;
 use glam::DVec3;
 
@@ -150,9 +150,9 @@ fn share(contact: &ContactPoint, widest: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::body::velocity::Velocity;
     use crate::contact::Material;
     use crate::contact::point::upright;
-    use crate::velocity::Velocity;
     use glam::DMat3;
 
     const STILL: SolverBody = SolverBody {

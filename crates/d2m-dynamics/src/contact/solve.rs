@@ -6,8 +6,8 @@ use super::newton::{Effort, Start};
 use super::solver_body::SolverBody;
 use super::sweeps::Pace;
 use super::system::System;
-use crate::turning::extreme_eigenvalues;
-use crate::velocity::Velocity;
+use crate::body::turning::extreme_eigenvalues;
+use crate::body::velocity::Velocity;
 use glam::DVec3;
 
 /// Moved bodies up to which they may stick however fast they are, where they are not some of many.

@@ -1,6 +1,6 @@
 //! A body of the velocity solve.
 
-use crate::velocity::Velocity;
+use crate::body::velocity::Velocity;
 use glam::DMat3;
 
 /// What the solver needs of a body. A body that impulses cannot move has no inverse masses.

@@ -59,8 +59,8 @@ const MEAN: f64 = 0.25;
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::body::velocity::Velocity;
     use crate::contact::{ContactPoint, SolverBody};
-    use crate::velocity::Velocity;
     use glam::{DMat3, DVec3};
 
     const ACCURACY: Accuracy = Accuracy {

@@ -5,7 +5,7 @@ use super::block::Block;
 use super::lanes::{Numbers, Wide};
 use super::law::Law;
 use super::solver_body::SolverBody;
-use crate::velocity::Velocity;
+use crate::body::velocity::Velocity;
 use d2m_cholesky::Factor;
 use glam::{DMat3, DVec3};
 

@@ -2,12 +2,12 @@
 
 use super::{FEW_ITEMS, Key, Occasion, Step};
 use crate::StepError;
+use crate::body::rigid_body::RigidBody;
 use crate::contact::ContactPoint;
-use crate::joint_rows::Ahead;
-use crate::measured::{AROUND, Measured, measure};
-use crate::pairs::Pair;
-use crate::rigid_body::RigidBody;
-use crate::solved_body::moves;
+use crate::flight::solved_body::moves;
+use crate::joint::rows::Ahead;
+use crate::pairs::closest_features::{AROUND, Measured, measure};
+use crate::pairs::known::Pair;
 use d2m_bvh::QueryError;
 use d2m_mesh::parallel::map_owned;
 

@@ -4,9 +4,9 @@ use super::event::{Cause, Event};
 use super::resolve::LEEWAY;
 use super::{FEW_ITEMS, Key, Occasion, Step};
 use crate::StepError;
+use crate::body::rigid_body::RigidBody;
 use crate::contact::ContactPoint;
-use crate::measured::{AROUND, measure};
-use crate::rigid_body::RigidBody;
+use crate::pairs::closest_features::{AROUND, measure};
 use d2m_mesh::parallel::map_owned;
 use std::collections::BTreeMap;
 

@@ -3,10 +3,10 @@
 use super::event::{Cause, Event};
 use super::{FEW_ITEMS, Key, Step};
 use crate::StepError;
-use crate::clearance::are_spheres_apart;
+use crate::pairs::clearance::are_spheres_apart;
 #[cfg(feature = "audit")]
-use crate::concluded::conclude;
-use crate::pairs::{Outcome, Pair, fly};
+use crate::pairs::concluded::conclude;
+use crate::pairs::known::{Outcome, Pair, fly};
 use d2m_bvh::Window;
 #[cfg(feature = "audit")]
 use d2m_bvh::audit::Place;
@@ -123,8 +123,8 @@ impl Step<'_> {
 mod tests {
     use super::*;
     use crate::Body;
-    use crate::flight::Splits;
-    use crate::rigid_body::RigidBody;
+    use crate::body::rigid_body::RigidBody;
+    use crate::flight::path::Splits;
     use d2m_bvh::MeshTree;
     use d2m_mesh::Faces;
     use std::sync::Arc;

@@ -4,11 +4,11 @@ use super::event::Event;
 use super::slide::{Sliding, slidings};
 use super::{Key, Step};
 use crate::StepError;
+use crate::body::rigid_body::RigidBody;
+use crate::body::velocity::Velocity;
 use crate::contact::{ContactPoint, NEAR, SolverBody, Squeeze};
-use crate::measured::{AROUND, measure};
-use crate::rigid_body::RigidBody;
-use crate::solved_body::{body_at, still};
-use crate::velocity::Velocity;
+use crate::flight::solved_body::{body_at, still};
+use crate::pairs::closest_features::{AROUND, measure};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Step<'_> {

@@ -11,9 +11,9 @@ mod sense;
 mod sleepers;
 mod slide;
 
+use crate::body::momenta::Momenta;
+use crate::body::rigid_body::RigidBody;
 use crate::contact::{ContactPoint, HIT};
-use crate::momenta::Momenta;
-use crate::rigid_body::RigidBody;
 use crate::{ContactListener, Simulation, StepError, StepReport};
 use connected::Sleepers;
 use event::{Cause, Event};

@@ -3,8 +3,8 @@
 use super::event::{Cause, Event};
 use super::{Occasion, Step};
 use crate::StepError;
-use crate::group::CROWD;
-use crate::rigid_body::RigidBody;
+use crate::body::rigid_body::RigidBody;
+use crate::flight::group::CROWD;
 use glam::DVec3;
 
 /// Times that flights from one and the same instant are planned anew.

@@ -2,8 +2,8 @@
 
 use super::{FEW_ITEMS, Step};
 use crate::StepError;
-use crate::clearance::are_spheres_apart;
-use crate::rigid_body::{RigidBody, Role};
+use crate::body::rigid_body::{RigidBody, Role};
+use crate::pairs::clearance::are_spheres_apart;
 use d2m_bvh::{
     Budget, ContactSpan, QueryError, QueryOptions, SpanStatus, Window, contact_spans, time_of_contact,
 };

@@ -1,8 +1,8 @@
 //! How far closest points may slide on their features until they may slip off, and which points beside them may further.
 
+use crate::body::rigid_body::RigidBody;
 use crate::contact::{ASKEW, CROSSING, ContactPoint, LEVER, ROUNDED};
-use crate::measured::vertices_of;
-use crate::rigid_body::RigidBody;
+use crate::pairs::closest_features::vertices_of;
 use d2m_feature::{FeaturePair, closest_point};
 use glam::DVec3;
 
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
     use crate::Body;
     use crate::contact::Material;
-    use crate::measured::{AROUND, measure};
+    use crate::pairs::closest_features::{AROUND, measure};
     use d2m_bvh::{MeshTree, TriMesh};
     use d2m_mesh::Faces;
     use glam::{DQuat, DVec3};

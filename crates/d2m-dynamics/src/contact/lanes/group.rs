@@ -4,7 +4,7 @@ use super::super::block::Block;
 use super::super::solver_body::SolverBody;
 use super::Order;
 use super::batch::{Batch, Ends, Pushes};
-use crate::velocity::Velocity;
+use crate::body::velocity::Velocity;
 use core::ops::Range;
 use d2m_lanes::{Doubles, Quad};
 

@@ -5,10 +5,10 @@ use super::super::law::Law;
 use super::super::solver_body::SolverBody;
 use super::super::system::System;
 use super::{Descent, Round, Wide};
+use crate::body::velocity::Velocity;
 use crate::contact::point::{JointRow, Material, upright};
 use crate::contact::{ContactPoint, tangents};
 use crate::drawn::{draw, vector};
-use crate::velocity::Velocity;
 use d2m_lanes::{InstructionSet, run_on};
 use glam::DMat3;
 

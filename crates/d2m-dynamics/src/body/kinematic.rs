@@ -1,0 +1,165 @@
+//! Bodies that follow a motion, as flights of constant twists that stay close to it.
+
+use crate::body::description::Kind;
+use crate::body::rigid_body::RigidBody;
+use crate::body::turning::rotation_vector;
+use crate::body::velocity::Velocity;
+use crate::numbers::LARGEST;
+use crate::{SimulationError, StepError};
+use d2m_interval::{Interval, IntervalVec3};
+use d2m_motion::{CoveredMotion, RigidMotion as _};
+use glam::{DQuat, DVec3};
+
+/// How far the twist of a kinematic flight may lead off the motion between its ends, of the gap.
+const OFF_MOTION: f64 = 0.01;
+/// Halvings of what is left of a step to keep to that: 4096 flights in a step, which take seconds, are the most.
+const MOST_HALVINGS: u32 = 12;
+/// A motion turns by less than this within a flight, so the shortest turn from its first orientation to its last is the one that it makes;
+/// below π, with room for rounding.
+const MOST_TURN: f64 = 3.0;
+
+/// Parts of a piece over which angular velocities are enclosed.
+const PARTS: u32 = 8;
+
+/// A motion from one pose of a body to another.
+struct Piece {
+    time: Interval,
+    length: f64,
+    /// Of the flight that joins the poses at both ends.
+    velocity: Velocity,
+}
+
+impl RigidBody {
+    /// The next piece of a kinematic body's motion: the twist about its center that leads from where it is to the pose at the end, as long
+    /// as the motion is proven to stay close to it. It is where its last flight ended, which is off its motion by rounding, or by what an error
+    /// that ended that flight has left: were it put where its motion is, it could be put into what touches it.
+    ///
+    /// # Errors
+    /// [`StepError::TooFast`] where no flight that is long enough does; a motion that does not cover the step.
+    pub(crate) fn follow(&mut self, end: f64, gap: f64) -> Result<(), StepError> {
+        let start = self.time;
+        if matches!(self.kind, Kind::Driven) {
+            return self.follow_target(end);
+        }
+        let Some(motion) = self.covered_motion(start, end)? else { return Ok(()) };
+        let mut horizon = motion.motion().smooth_until(start).map_or(end, |joint| end.min(joint));
+        for _ in 0..=MOST_HALVINGS {
+            let piece = self.piece(motion, start, horizon);
+            if self.bound_deviation(motion, &piece) <= OFF_MOTION * gap {
+                self.fly(piece.velocity, horizon);
+                return Ok(());
+            }
+            let middle = start + 0.5 * piece.length;
+            if !(middle > start && middle < horizon) {
+                break;
+            }
+            horizon = middle;
+        }
+        Err(StepError::TooFast { body: self.name.to_string(), time: start })
+    }
+
+    /// Until when what follows its motion may go on as in its present flight: the next joint of the motion.
+    pub(crate) fn goes_on_until(&self, time: f64) -> f64 {
+        match &self.kind {
+            Kind::Kinematic(motion) => motion.smooth_until(time).unwrap_or(f64::INFINITY),
+            _ => self.horizon,
+        }
+    }
+
+    /// How far what follows its motion is at most, at any time until then, from where its present flight would lead on: at its horizon it is where
+    /// its motion has it. None: it is not known.
+    pub(crate) fn strays(&self, until: f64) -> Option<f64> {
+        if self.horizon >= until {
+            return Some(0.0);
+        }
+        let covered = self.covered_motion(self.horizon, until).ok()??;
+        let (motion, span) = (covered.motion(), Interval::new(self.horizon, until));
+        let (twist, pose) = (motion.enclose_twist(span), motion.enclose_pose(span));
+        let arm = pose.enclose_vector(self.center - pose.at);
+        let center = twist.linear + twist.angular.cross(arm);
+        let linear = center - IntervalVec3::point(self.flight.linear_velocity());
+        let angular = twist.angular - IntervalVec3::point(self.flight.angular_velocity());
+        let rate = linear.norm() + angular.norm() * self.radius;
+        let off = rate * (Interval::point(until) - Interval::point(self.horizon));
+        off.sup().is_finite().then_some(off.sup())
+    }
+
+    /// The flight of a driven body that ends at its target; at rest where it has none.
+    fn follow_target(&mut self, end: f64) -> Result<(), StepError> {
+        let Some(target) = self.target else {
+            self.fly(Velocity::default(), f64::INFINITY);
+            return Ok(());
+        };
+        let length = end - self.time;
+        let velocity = Velocity {
+            linear: (target.position - self.position) / length,
+            angular: rotation_vector(target.orientation * self.orientation.conjugate()) / length,
+        };
+        let fastest = velocity.linear.abs().max_element().max(velocity.angular.abs().max_element());
+        let is_slow = fastest <= LARGEST;
+        if !is_slow {
+            return Err(StepError::TooFast { body: self.name.to_string(), time: self.time });
+        }
+        self.fly(velocity, end);
+        Ok(())
+    }
+
+    /// The motion of a kinematic body over some times; none of other bodies.
+    ///
+    /// # Errors
+    /// It does not cover them.
+    pub(crate) fn covered_motion(
+        &self,
+        from: f64,
+        to: f64,
+    ) -> Result<Option<CoveredMotion<'_>>, SimulationError> {
+        let Kind::Kinematic(motion) = &self.kind else { return Ok(None) };
+        let outside = |outside| SimulationError::OutsideMotion { body: self.name.to_string(), outside };
+        CoveredMotion::try_new(&**motion, from, to).map(Some).map_err(outside)
+    }
+
+    /// Where a motion of the mesh frame has the center and the axes.
+    fn place_by(&self, motion: CoveredMotion<'_>, time: f64) -> (DVec3, DQuat) {
+        let (pose, _) = motion.motion().pose_and_twist(time);
+        (pose.transform_point(self.center), pose.rotation.normalize())
+    }
+
+    fn piece(&self, motion: CoveredMotion<'_>, start: f64, end: f64) -> Piece {
+        let length = end - start;
+        let (last_x, last_q) = self.place_by(motion, end);
+        let velocity = Velocity {
+            linear: (last_x - self.position) / length,
+            angular: rotation_vector(last_q * self.orientation.conjugate()) / length,
+        };
+        Piece { time: Interval::new(start, end), length, velocity }
+    }
+
+    /// How far a point of the body may be from where the flight has it, between the ends of a piece, at which both agree.
+    ///
+    /// The center flies straight between two points of its path: it is off by at most h²/8 of its largest acceleration. With
+    /// E = R P⁻¹ of the orientations R of the motion and P of the flight, E turns with ω − E ω₀, and the component of that along E's
+    /// own axis is the one of ω − ω₀; so the angle of E, which is zero at both ends, is at most half of the integral of |ω − ω₀|.
+    fn bound_deviation(&self, motion: CoveredMotion<'_>, piece: &Piece) -> f64 {
+        let motion = motion.motion();
+        let &Piece { time, length, velocity } = piece;
+        let spin = motion.enclose_twist(time).angular;
+        // Not when it is no number either.
+        let turns_by_less = spin.norm().hi() * length < MOST_TURN;
+        if !turns_by_less {
+            return f64::INFINITY;
+        }
+        let rate = motion.enclose_twist_rate(time);
+        let pose = motion.enclose_pose(time);
+        // From the reference point to the center; what lies along the axis of a spin does not speed up.
+        let arm = pose.enclose_vector(self.center - pose.at);
+        let acceleration = rate.linear + rate.angular.cross(arm) + spin.cross(spin.cross(arm));
+        let bend = acceleration.norm().hi() * (0.125 * length * length);
+        let off = |part: Interval| {
+            let spin = motion.enclose_twist(part).angular - IntervalVec3::point(velocity.angular);
+            spin.norm().hi() * (part.hi() - part.lo())
+        };
+        let at = |k: u32| time.lo() + length * (f64::from(k) / f64::from(PARTS));
+        let parts = (0..PARTS).map(|k| Interval::new(at(k), at(k + 1).min(time.hi())));
+        bend + 0.5 * parts.map(off).sum::<f64>() * self.radius
+    }
+}

@@ -1,0 +1,398 @@
+//! The state of a body: what it is, where it is, what it weighs. What it flies: `flight`.
+
+use crate::body::description::{Body, BodyId, Damping, Groups, Kind, Mass, Presence};
+use crate::body::momenta::Momenta;
+use crate::body::turning::{Pull, extreme_eigenvalues};
+use crate::body::velocity::Velocity;
+use crate::numbers::{Numbers, is_small, unusable_of};
+use crate::pairs::hollow::{bores, cavity};
+use crate::rest::quiet::Quiet;
+use crate::shown::shown;
+use crate::{MassProperties, SimulationError};
+use d2m_bvh::{MeshTree, Moving, QueryError, Solid};
+use d2m_interval::Interval;
+use d2m_mesh::Faces;
+use d2m_motion::{ConstantTwist, CoveredMotion};
+use glam::{DMat3, DQuat, DVec3};
+use std::sync::Arc;
+
+/// How far the axes of a body are followed, of how far it reaches.
+pub(crate) const AXES_REACH: f64 = 1.0625;
+
+/// What a place in the list of bodies is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    Body,
+    /// A body that others pass through.
+    Sensor,
+    /// What joints with the world are with: nothing meets it.
+    World,
+    /// Its body was removed.
+    Vacant,
+}
+
+impl Role {
+    /// Of a body that a user has added.
+    pub(crate) fn is_named(self) -> bool {
+        matches!(self, Self::Body | Self::Sensor)
+    }
+}
+
+/// Where a body is to be: its center and its axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Target {
+    pub(crate) position: DVec3,
+    pub(crate) orientation: DQuat,
+}
+
+/// A body of a simulation. `position` is that of the center of mass.
+#[derive(Clone)]
+pub(crate) struct RigidBody {
+    pub(crate) id: BodyId,
+    pub(crate) role: Role,
+    pub(crate) name: Arc<str>,
+    pub(crate) tree: Arc<MeshTree>,
+    pub(crate) faces: Arc<Faces>,
+    pub(crate) solid: Solid,
+    pub(crate) kind: Kind,
+    /// Center of mass (of a body without mass: of its volume or its bounding box), mesh frame.
+    pub(crate) center: DVec3,
+    /// No point of the body is further from the center; rounded up.
+    pub(crate) radius: f64,
+    /// The body is everything within this distance of its mesh.
+    pub(crate) rounding: f64,
+    /// No point of its mesh is nearer to the center; zero if the center does not lie in a cavity.
+    pub(crate) cavity: f64,
+    /// Nor to the lines through that along the axes of the mesh, as far as [`AXES_REACH`] says.
+    pub(crate) bores: [f64; 3],
+    pub(crate) damping: Damping,
+    pub(crate) groups: Groups,
+    /// Mesh axes.
+    pub(crate) surface_velocity: DVec3,
+    /// Where its mass comes from, when it is dynamic.
+    pub(crate) given: Mass,
+    /// Zero for bodies that forces cannot move, as are the other masses.
+    pub(crate) mass: f64,
+    pub(crate) inverse_mass: f64,
+    pub(crate) inertia: DMat3,
+    pub(crate) inverse_inertia: DMat3,
+    /// The least and the greatest inverse of a principal moment of inertia.
+    pub(crate) moments: [f64; 2],
+    pub(crate) restitution: f64,
+    pub(crate) friction: f64,
+
+    /// When the rest of the state holds.
+    pub(crate) time: f64,
+    pub(crate) position: DVec3,
+    pub(crate) orientation: DQuat,
+    pub(crate) momentum: DVec3,
+    pub(crate) angular_momentum: DVec3,
+    /// Of the user, over the next step.
+    pub(crate) force: DVec3,
+    pub(crate) torque: DVec3,
+    /// From `time` on, until `horizon` at most.
+    pub(crate) flight: ConstantTwist,
+    pub(crate) horizon: f64,
+    /// Changes with every flight, and with every change from outside.
+    pub(crate) version: u64,
+    /// Has it begun a flight since it was added, or changed from outside? Till then its momenta say how fast it is.
+    pub(crate) has_flown: bool,
+    /// Where a driven body is to be at the end of the next step.
+    pub(crate) target: Option<Target>,
+    /// Stands still until the end of the step.
+    pub(crate) held: bool,
+    /// The velocity of the present flight is that of the momenta after the forces of so much time; negative where the
+    /// middle of the flight that was planned has passed. None: a flight is to be planned.
+    pub(crate) lead: Option<f64>,
+    /// Nothing touches it in this flight.
+    pub(crate) free: bool,
+    /// The account of energy: what contacts have added to the least energy before.
+    pub(crate) gained: f64,
+    pub(crate) asleep: bool,
+    /// For how long it has been quiet.
+    pub(crate) quiet: Quiet,
+}
+
+impl RigidBody {
+    pub(crate) fn try_new(body: &Body, faces: Arc<Faces>, time: f64) -> Result<Self, SimulationError> {
+        let bad = |name: &'static str, value: String| unusable_of(&body.name, name, value);
+        let vectors = [
+            ("position", body.position),
+            ("velocity", body.linear_velocity),
+            ("angular velocity", body.angular_velocity),
+            ("surface velocity", body.surface_velocity),
+        ];
+        let [linear, angular] = body.damping.rates();
+        let numbers = Numbers {
+            body: &body.name,
+            vectors: &vectors,
+            orientation: body.orientation,
+            restitution: body.restitution,
+            friction: body.friction,
+            not_negative: &[("radius", body.radius), linear, angular],
+        };
+        numbers.check()?;
+        let given = vectors[1..3].iter().find(|(_, v)| *v != DVec3::ZERO);
+        if let (Kind::Static | Kind::Kinematic(_) | Kind::Driven, Some(&(name, value))) = (&body.kind, given)
+        {
+            return Err(SimulationError::VelocityWithoutMotion { body: body.name.clone(), name, value });
+        }
+        let mesh = body.tree.mesh();
+        let given = |error| SimulationError::Mass { body: body.name.clone(), error };
+        let properties = match (&body.kind, body.mass) {
+            (Kind::Dynamic, Mass::Density(density)) => {
+                Some(MassProperties::try_from_density(mesh, density).map_err(given)?)
+            }
+            (Kind::Dynamic, Mass::Total(mass)) => {
+                Some(MassProperties::try_from_mass(mesh, mass).map_err(given)?)
+            }
+            (Kind::Dynamic, Mass::Given(p)) => {
+                Some(MassProperties::try_new(p.mass, p.center, p.inertia).map_err(given)?)
+            }
+            _ => None,
+        };
+        let center = properties.map_or_else(|| middle(&body.tree), |p| p.center);
+        let farthest = mesh.triangles().iter().flatten().map(|&v| {
+            let arm = mesh.vertices()[v as usize] - center;
+            arm.length()
+        });
+        // A difference, three squares, two sums and a root: five roundings of relative size 2⁻⁵³ are fewer than 8ε.
+        let radius = farthest.fold(0.0, f64::max) * (1.0 + 8.0 * f64::EPSILON) + f64::MIN_POSITIVE;
+        let radius = if body.radius > 0.0 { (radius + body.radius).next_up() } else { radius };
+        let kind = body.kind.clone();
+        let (mesh_position, orientation) = match &kind {
+            Kind::Kinematic(motion) => {
+                let outside = |outside| SimulationError::OutsideMotion { body: body.name.clone(), outside };
+                let covered = CoveredMotion::try_new(&**motion, time, time).map_err(outside)?;
+                let (pose, _) = covered.motion().pose_and_twist(time);
+                (pose.transform_point(DVec3::ZERO), pose.rotation.normalize())
+            }
+            _ => (body.position, body.orientation.normalize()),
+        };
+        let position = mesh_position + orientation * center;
+        let (mass, inertia) = properties.map_or((0.0, DMat3::ZERO), |p| (p.mass, p.inertia));
+        let dynamic = properties.is_some();
+        let inverse_inertia = if dynamic { inertia.inverse() } else { DMat3::ZERO };
+        let rotation = DMat3::from_quat(orientation);
+        if body.solid == Some(Solid::Filled) && !body.tree.is_watertight() {
+            return Err(bad("solid", "of a mesh that is not watertight".to_owned()));
+        }
+        let solid =
+            body.solid.unwrap_or(if body.tree.is_watertight() { Solid::Filled } else { Solid::Surface });
+        let rest = rest(center, position, orientation, time)
+            .ok_or_else(|| bad("position", shown(position.to_array())))?;
+        let made = Self {
+            id: BodyId { place: 0, generation: 0 },
+            role: if body.presence == Presence::Sensor { Role::Sensor } else { Role::Body },
+            name: body.name.as_str().into(),
+            tree: Arc::clone(&body.tree),
+            faces,
+            solid,
+            kind,
+            center,
+            radius,
+            rounding: body.radius,
+            cavity: cavity(&body.tree, center),
+            bores: bores(&body.tree, center, AXES_REACH * radius),
+            damping: body.damping,
+            groups: body.groups,
+            surface_velocity: body.surface_velocity,
+            given: body.mass,
+            mass,
+            inverse_mass: if dynamic { 1.0 / mass } else { 0.0 },
+            inertia,
+            inverse_inertia,
+            moments: extreme_eigenvalues(inverse_inertia),
+            restitution: body.restitution,
+            friction: body.friction,
+            time,
+            position,
+            orientation,
+            momentum: body.linear_velocity * mass,
+            angular_momentum: rotation * (inertia * (rotation.transpose() * body.angular_velocity)),
+            force: DVec3::ZERO,
+            torque: DVec3::ZERO,
+            flight: rest,
+            horizon: f64::INFINITY,
+            version: 0,
+            has_flown: false,
+            target: None,
+            held: false,
+            lead: None,
+            free: false,
+            gained: 0.0,
+            asleep: false,
+            quiet: Quiet::default(),
+        };
+        let velocities = [("velocity", body.linear_velocity), ("angular velocity", body.angular_velocity)];
+        made.check_momenta(velocities, [DVec3::ZERO; 2])?;
+        Ok(made)
+    }
+
+    /// Two additions to the momenta, linear and angular, and what is given for them, by its names: refused if they are not finite, or if the body would have
+    /// momenta or velocities above [`Simulation::LARGEST`](crate::Simulation::LARGEST).
+    pub(crate) fn check_momenta(
+        &self,
+        given: [(&'static str, DVec3); 2],
+        [linear, angular]: [DVec3; 2],
+    ) -> Result<(), SimulationError> {
+        // Also what is not a number is refused.
+        let refuse = |(name, value): (&'static str, DVec3)| {
+            Err(SimulationError::TooLarge { body: self.name.to_string(), name, value })
+        };
+        if !linear.is_finite() || !is_small(self.momentum + linear) {
+            return refuse(given[0]);
+        }
+        if !angular.is_finite() || !is_small(self.angular_momentum + angular) {
+            return refuse(given[1]);
+        }
+        if !is_small((self.momentum + linear) * self.inverse_mass) {
+            return refuse(given[0]);
+        }
+        let turn = self.inverse_inertia_at(self.orientation) * (self.angular_momentum + angular);
+        if !is_small(turn) {
+            return refuse(given[1]);
+        }
+        Ok(())
+    }
+
+    pub(crate) fn is_dynamic(&self) -> bool {
+        self.inverse_mass > 0.0
+    }
+
+    pub(crate) fn is_kinematic(&self) -> bool {
+        matches!(self.kind, Kind::Kinematic(_) | Kind::Driven)
+    }
+
+    /// A driven body that stands still and stays there.
+    fn is_parked(&self) -> bool {
+        matches!(self.kind, Kind::Driven) && self.target.is_none() && self.stands_still()
+    }
+
+    /// Does it follow a motion that leads on?
+    pub(crate) fn is_driven(&self) -> bool {
+        self.is_kinematic() && !self.stands_still()
+    }
+
+    /// Does it move, or may it be moved, in this step?
+    pub(crate) fn is_awake(&self) -> bool {
+        (self.is_dynamic() && !self.asleep) || (self.is_kinematic() && !self.is_parked())
+    }
+
+    /// If it sleeps it is simulated again, from this time on.
+    pub(crate) fn wake(&mut self, time: f64) {
+        if self.asleep {
+            self.asleep = false;
+            self.time = time;
+            self.lead = None;
+        }
+    }
+
+    /// How fast the surface runs, world axes.
+    pub(crate) fn surface_velocity_at(&self, orientation: DQuat) -> DVec3 {
+        orientation * self.surface_velocity
+    }
+
+    /// The body on a motion, solid or a surface as it is.
+    pub(crate) fn moving_on<'a>(&'a self, motion: &'a ConstantTwist) -> Moving<'a> {
+        Moving::new(&*self.tree, motion).with_solid(self.solid).with_radius(self.rounding)
+    }
+
+    /// Velocities fade for so much time.
+    pub(crate) fn damp(&mut self, time: f64) {
+        // The nearest number to the exponential, with the same bits everywhere.
+        let factor = |rate: f64| Interval::point(-rate * time).exp().mid();
+        if self.damping.linear > 0.0 {
+            self.momentum *= factor(self.damping.linear);
+        }
+        if self.damping.angular > 0.0 {
+            self.angular_momentum *= factor(self.damping.angular);
+        }
+    }
+
+    /// Of gravity and the user.
+    pub(crate) fn force_with(&self, gravity: DVec3) -> DVec3 {
+        self.force + gravity * self.mass
+    }
+
+    pub(crate) fn momenta(&self) -> Momenta {
+        Momenta { linear: self.momentum, angular: self.angular_momentum }
+    }
+
+    pub(crate) fn push(&mut self, added: Momenta) {
+        self.momentum += added.linear;
+        self.angular_momentum += added.angular;
+    }
+
+    /// Takes back an impulse of this instant.
+    pub(crate) fn retract(&mut self, pushed: Momenta) {
+        let before = self.kinetic_energy();
+        self.push(-pushed);
+        self.gained += self.kinetic_energy() - before;
+    }
+
+    /// Of the momenta.
+    pub(crate) fn kinetic_energy(&self) -> f64 {
+        let turn = self.inverse_inertia_at(self.orientation) * self.angular_momentum;
+        0.5 * (self.momentum.length_squared() * self.inverse_mass + self.angular_momentum.dot(turn))
+    }
+
+    /// What the account of energy may hold: the energy of the forces' impulse over half a step, and that of a lift by a gap.
+    pub(crate) fn energy_limit(&self, gravity: DVec3, step: f64, gap: f64) -> f64 {
+        let force = self.force_with(gravity);
+        let (linear, angular) = (force * (0.5 * step), self.torque * (0.5 * step));
+        let turn = self.inverse_inertia_at(self.orientation) * angular;
+        0.5 * (linear.length_squared() * self.inverse_mass + angular.dot(turn)) + force.length() * gap
+    }
+
+    /// Velocity at `time`, as the momenta have it.
+    pub(crate) fn velocity(&self) -> Velocity {
+        let r = DMat3::from_quat(self.orientation);
+        let angular = r * (self.inverse_inertia * (r.transpose() * self.angular_momentum));
+        Velocity { linear: self.momentum * self.inverse_mass, angular }
+    }
+
+    pub(crate) fn inverse_inertia_at(&self, orientation: DQuat) -> DMat3 {
+        let r = DMat3::from_quat(orientation);
+        r * self.inverse_inertia * r.transpose()
+    }
+
+    /// Against what changes its spin, with what a pull adds to it.
+    pub(crate) fn inverse_inertia_under(&self, orientation: DQuat, pull: Option<Pull>) -> DMat3 {
+        let Some(pull) = pull else { return self.inverse_inertia_at(orientation) };
+        let r = DMat3::from_quat(orientation);
+        (r * self.inertia * r.transpose() + pull.stiffness).inverse()
+    }
+
+    /// Is somewhere else, by the way that a velocity leads in a unit of time.
+    pub(crate) fn shift(&mut self, by: Velocity) {
+        self.position += by.linear;
+        self.orientation = self.turned(by.angular, 1.0).normalize();
+        self.flight = self.flight.with_position(self.position).with_orientation(self.orientation);
+    }
+
+    /// What a query of this body with another one failed by.
+    pub(crate) fn query_error(&self, other: &Self, error: QueryError) -> SimulationError {
+        SimulationError::Query { a: self.name.to_string(), b: other.name.to_string(), error }
+    }
+}
+
+/// A flight that leads nowhere. None: numbers that are none, or too large.
+pub(crate) fn rest(center: DVec3, position: DVec3, orientation: DQuat, time: f64) -> Option<ConstantTwist> {
+    ConstantTwist::try_new(position, orientation, DVec3::ZERO, DVec3::ZERO)
+        .and_then(|flight| flight.try_with_at(center))
+        .and_then(|flight| flight.try_with_reference_time(time))
+        .ok()
+}
+
+/// Of a mesh without mass: the center of its volume if it is closed, of its bounding box otherwise.
+fn middle(tree: &MeshTree) -> DVec3 {
+    if tree.is_watertight() {
+        let solid = MassProperties::of_enclosed(tree.mesh());
+        if solid.center.is_finite() && (solid.center - tree.center()).length() <= 2.0 * tree.radius() {
+            return solid.center;
+        }
+    }
+    DVec3::ZERO
+}

@@ -1,0 +1,8 @@
+//! Flights: constant twists between contacts, the velocities that they are solved for, and how long they are.
+pub(crate) mod account;
+pub(crate) mod attempt;
+pub(crate) mod group;
+pub(crate) mod length;
+pub(crate) mod path;
+pub(crate) mod problem;
+pub(crate) mod solved_body;

@@ -1,0 +1,25 @@
+//! Bodies as the velocities of flights are solved for.
+
+use crate::body::rigid_body::RigidBody;
+use crate::body::velocity::Velocity;
+use crate::contact::SolverBody;
+use glam::DMat3;
+
+/// May impulses move it? What sleeps bears what rests on it, until it wakes.
+pub(crate) fn moves(state: &RigidBody) -> bool {
+    state.is_dynamic() && !state.held && !state.asleep
+}
+
+pub(crate) fn body_at(state: &RigidBody, velocity: Velocity, inverse_inertia: DMat3) -> SolverBody {
+    SolverBody { inverse_mass: state.inverse_mass, inverse_inertia, velocity }
+}
+
+/// A body that impulses do not move.
+pub(crate) fn still(state: &RigidBody) -> SolverBody {
+    SolverBody { inverse_mass: 0.0, inverse_inertia: DMat3::ZERO, velocity: state.present_velocity() }
+}
+
+pub(crate) fn world_inertia(state: &RigidBody) -> (f64, DMat3) {
+    let r = DMat3::from_quat(state.orientation);
+    (state.mass, r * state.inertia * r.transpose())
+}

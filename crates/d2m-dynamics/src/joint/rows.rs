@@ -1,0 +1,398 @@
+//! Joints of bodies in a simulation, and their rows.
+
+use crate::SimulationError;
+use crate::body::rigid_body::RigidBody;
+use crate::body::turning::rotation_vector;
+use crate::contact::{ContactPoint, JointRow, Law, Material, tangents};
+use crate::joint::description::{Joint, JointKind, Motor, MotorTarget};
+use crate::numbers::{FINITE, NOT_NEGATIVE, UNUSABLE, is_small};
+use crate::shown::{shown, shown_turn};
+use d2m_feature::FeaturePair;
+use glam::{BVec3, DQuat, DVec3};
+
+/// The part of what a joint is off that a step takes back.
+const TAKEN_BACK: f64 = 0.2;
+
+/// A joint between two bodies of the list, the second one perhaps the world.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Joined {
+    pub(crate) joint: Joint,
+    pub(crate) bodies: [usize; 2],
+    /// From the centers to the point, and the axis, in the axes of the bodies.
+    arms: [DVec3; 2],
+    axes: [DVec3; 2],
+    /// The turn of the second body's axes against those of the first one.
+    turn: DQuat,
+    /// The value at the last look: angles go on beyond half a turn.
+    value: f64,
+    /// Was it taken out, or one of its bodies?
+    is_gone: bool,
+}
+
+/// The flight that rows are for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ahead {
+    pub(crate) length: f64,
+    pub(crate) step: f64,
+    /// Do springs, soft motors and friction act? Not at an event: they have acted for the whole step.
+    pub(crate) forces: bool,
+    /// How much of the step has passed, and what the joint's motor has pushed in it.
+    pub(crate) passed: f64,
+    pub(crate) spent: f64,
+}
+
+/// The joint of these bodies is refused for a value.
+fn unusable([a, b]: [&RigidBody; 2], name: &'static str, value: String) -> SimulationError {
+    let [a, b] = [a, b].map(|body| body.name.to_string());
+    SimulationError::BadJoint { a, b, name, value, reason: UNUSABLE }
+}
+
+impl Joined {
+    pub(crate) fn try_new(
+        joint: &Joint,
+        places: [usize; 2],
+        bodies: &[RigidBody],
+    ) -> Result<Self, SimulationError> {
+        let [a, b] = places.map(|i| &bodies[i]);
+        let bad = |name: &'static str, value: String| Err(unusable([a, b], name, value));
+        Self::check_numbers(joint, [a, b])?;
+        let axis = joint.axis.normalize_or_zero();
+        if places[0] == places[1] || !(a.is_dynamic() || b.is_dynamic()) {
+            return bad("pair", "without a dynamic body, or of a body with itself,".to_owned());
+        }
+        let is_locked = matches!(joint.kind, JointKind::Locked { .. });
+        if is_locked && joint.b.is_some() {
+            return bad("second body", "of a lock, which holds to the world only,".to_owned());
+        }
+        let point = if is_locked { a.position } else { joint.point };
+        let own = |body: &RigidBody, v: DVec3| body.orientation.conjugate() * v;
+        Ok(Self {
+            joint: joint.clone(),
+            bodies: places,
+            arms: [own(a, point - a.position), own(b, point - b.position)],
+            axes: [own(a, axis), own(b, axis)],
+            turn: a.orientation.conjugate() * b.orientation,
+            value: 0.0,
+            is_gone: false,
+        })
+    }
+
+    /// The numbers of a joint of these bodies, given or read.
+    fn check_numbers(joint: &Joint, [a, b]: [&RigidBody; 2]) -> Result<(), SimulationError> {
+        let bad = |name: &'static str, value: String, reason: &'static str| {
+            let [a, b] = [a, b].map(|body| body.name.to_string());
+            Err(SimulationError::BadJoint { a, b, name, value, reason })
+        };
+        if !joint.point.is_finite() {
+            return bad("point", shown(joint.point.to_array()), FINITE);
+        }
+        if !joint.axis.is_finite() || joint.axis.normalize_or_zero() == DVec3::ZERO {
+            return bad("axis", shown(joint.axis.to_array()), "has no direction");
+        }
+        if let Some(limits) = joint.limits.filter(|[lo, hi]| !(lo.is_finite() && hi.is_finite() && lo <= hi))
+        {
+            return bad("limits", format!("{limits:?}"), "must be finite, the lower one first");
+        }
+        let motor = joint.motor.iter().flat_map(|motor| {
+            let (MotorTarget::Velocity(aim) | MotorTarget::Position(aim)) = motor.target;
+            let most = if motor.most == f64::INFINITY { 0.0 } else { motor.most };
+            [
+                ("motor", aim.abs()),
+                ("motor max", most),
+                ("motor stiffness", motor.stiffness),
+                ("motor damping", motor.damping),
+            ]
+        });
+        let spring = joint.spring.iter().flat_map(|spring| {
+            [
+                ("spring stiffness", spring.stiffness),
+                ("spring damping", spring.damping),
+                ("spring rest", spring.rest.abs()),
+            ]
+        });
+        let numbers = motor.chain(spring).chain([("friction", joint.friction)]);
+        for (name, value) in numbers {
+            if !(value.is_finite() && value >= 0.0) {
+                return bad(name, shown([value]), NOT_NEGATIVE);
+            }
+        }
+        Ok(())
+    }
+
+    /// Of a snapshot: is it a joint of these bodies? Both may be static by now.
+    pub(crate) fn check(&self, bodies: [&RigidBody; 2]) -> Result<(), SimulationError> {
+        let [a, b] = bodies;
+        Self::check_numbers(&self.joint, bodies)?;
+        let is_pair = a.id != b.id && self.joint.a == a.id && self.joint.b.is_none_or(|named| named == b.id);
+        let is_locked = matches!(self.joint.kind, JointKind::Locked { .. });
+        let fault = if !is_pair || (is_locked && self.joint.b.is_some()) {
+            Some(("pair", format!("{:?}", self.bodies)))
+        } else if !self.arms.iter().all(|arm| is_small(*arm)) {
+            Some(("arms", format!("{:?}", self.arms)))
+        } else if !(self.axes.iter().all(|axis| axis.is_normalized()) && self.turn.is_normalized()) {
+            Some(("axes", format!("{:?}, {}", self.axes, shown_turn(self.turn))))
+        } else {
+            (!is_small(DVec3::splat(self.value))).then(|| ("value", shown([self.value])))
+        };
+        fault.map_or(Ok(()), |(name, value)| Err(unusable([a, b], name, value)))
+    }
+
+    pub(crate) fn has(&self, body: usize) -> bool {
+        !self.is_gone && self.bodies.contains(&body)
+    }
+
+    /// The center of a body is another point of it now: `by` further, in its axes. Locks are those of the new center.
+    pub(crate) fn center_moved(&mut self, body: usize, by: DVec3) {
+        if matches!(self.joint.kind, JointKind::Locked { .. }) {
+            return;
+        }
+        for (arm, place) in self.arms.iter_mut().zip(self.bodies) {
+            if place == body {
+                *arm -= by;
+            }
+        }
+    }
+
+    /// Does it connect bodies, rather than lock axes of one in the world?
+    pub(crate) fn is_between_bodies(&self) -> bool {
+        !matches!(self.joint.kind, JointKind::Locked { .. })
+    }
+
+    /// A joint that holds the bodies as they are, at the same point.
+    pub(crate) fn fixed_at(&self, [a, b]: [&RigidBody; 2]) -> Self {
+        let point = b.position + b.orientation * self.arms[1];
+        let joint = Joint { kind: JointKind::Fixed, limits: None, ..self.joint.clone() };
+        Self {
+            joint,
+            arms: [a.orientation.conjugate() * (point - a.position), self.arms[1]],
+            turn: a.orientation.conjugate() * b.orientation,
+            ..self.clone()
+        }
+    }
+
+    pub(crate) fn take_out(&mut self) {
+        self.is_gone = true;
+    }
+
+    /// Does a motor or a spring act at it?
+    pub(crate) fn drives(&self) -> bool {
+        !self.is_gone() && (self.joint.motor.is_some() || self.joint.spring.is_some())
+    }
+
+    /// Does a motor without a bound on its force see to its value?
+    pub(crate) fn holds(&self) -> bool {
+        let is_hard = |motor: &Motor| motor.most == f64::INFINITY && motor.hard_rate(0.0, 1.0).is_some();
+        !self.is_gone() && self.joint.motor.as_ref().is_some_and(is_hard)
+    }
+
+    pub(crate) fn is_gone(&self) -> bool {
+        self.is_gone
+    }
+
+    /// The value where the bodies are: the angle or the length.
+    pub(crate) fn value(&self, bodies: [&RigidBody; 2]) -> f64 {
+        let poses = bodies.map(|body| (body.position, body.orientation));
+        let [(xa, qa), (xb, qb)] = poses;
+        match self.joint.kind {
+            JointKind::Revolute => {
+                let off = rotation_vector(qb * (qa * self.turn).conjugate());
+                let angle = off.dot(qa * self.axes[0]);
+                let turns = ((self.value - angle) / core::f64::consts::TAU).round();
+                angle + turns * core::f64::consts::TAU
+            }
+            JointKind::Prismatic => {
+                ((xb + qb * self.arms[1]) - (xa + qa * self.arms[0])).dot(qa * self.axes[0])
+            }
+            JointKind::Fixed | JointKind::Spherical | JointKind::Locked { .. } => 0.0,
+        }
+    }
+
+    /// Remembers the value, of which angles are known up to full turns.
+    pub(crate) fn look(&mut self, bodies: &[RigidBody]) {
+        if self.is_gone {
+            return;
+        }
+        self.value = self.value(self.bodies.map(|i| &bodies[i]));
+    }
+
+    /// How far the bodies are from what the joint keeps, along each of its equations, in these poses.
+    pub(crate) fn offs(&self, [(xa, qa), (xb, qb)]: [(DVec3, DQuat); 2]) -> Vec<f64> {
+        let away = (xb + qb * self.arms[1]) - (xa + qa * self.arms[0]);
+        let tilted = match self.joint.kind {
+            JointKind::Revolute => (qa * self.axes[0]).cross(qb * self.axes[1]),
+            JointKind::Spherical => DVec3::ZERO,
+            JointKind::Fixed | JointKind::Prismatic | JointKind::Locked { .. } => {
+                rotation_vector(qb * (qa * self.turn).conjugate())
+            }
+        };
+        let along = |v: DVec3| move |direction: &DVec3| v.dot(*direction);
+        let (linear, angular) = self.directions(qa);
+        linear.iter().map(along(away)).chain(angular.iter().map(along(tilted))).collect()
+    }
+
+    /// The directions of the equations: of ways, and of turns.
+    fn directions(&self, qa: DQuat) -> (Vec<DVec3>, Vec<DVec3>) {
+        let all = vec![DVec3::X, DVec3::Y, DVec3::Z];
+        let across: Vec<DVec3> = tangents(self.axes[0]).into_iter().map(|t| qa * t).collect();
+        match self.joint.kind {
+            JointKind::Fixed => (all.clone(), all),
+            JointKind::Revolute => (all, across),
+            JointKind::Prismatic => (across, all),
+            JointKind::Spherical => (all, Vec::new()),
+            JointKind::Locked { ways, turns } => {
+                let locked = |axes: BVec3| (0..3).filter(|&k| axes.test(k)).map(|k| all[k]).collect();
+                (locked(ways), locked(turns))
+            }
+        }
+    }
+
+    /// Turns about a single locked axis: a rate, and no place that it could drift from.
+    fn is_of_a_rate(&self, row: &JointRow) -> bool {
+        let is_one = |turns: BVec3| turns.bitmask().is_power_of_two();
+        matches!(self.joint.kind, JointKind::Locked { turns, .. } if row.is_angular && is_one(turns))
+    }
+
+    /// What the equations may be off at the end of a flight from here.
+    pub(crate) fn aims(&self, poses: [(DVec3, DQuat); 2], length: f64, step: f64) -> Vec<f64> {
+        let left = 1.0 - TAKEN_BACK * (length / step).min(1.0);
+        self.offs(poses).into_iter().map(|off| left * off).collect()
+    }
+
+    /// The rows of the next flight: impulses act where the bodies are. The rates of equations are corrected until the flight's end is where
+    /// it should be ([`Self::aims`]), which makes it the method SHAKE: symplectic, so that energy does not drift.
+    pub(crate) fn rows(&self, number: usize, pair: [&RigidBody; 2], ahead: Ahead) -> Vec<ContactPoint> {
+        let arms = [0, 1].map(|k| pair[k].orientation * self.arms[k]);
+        let points = [0, 1].map(|k| pair[k].position + arms[k]);
+        let axis = pair[0].orientation * self.axes[0];
+        let mut made = Made { joined: self, number, arms, point: points[1], rows: Vec::new() };
+        // Both arms reach to one point, so that impulses make no angular momentum: of a slide that of b.
+        if matches!(self.joint.kind, JointKind::Locked { .. }) {
+            // The world has no angular momentum to keep: what locks push acts on the center.
+            made.arms[1] = points[0] - pair[1].position;
+        } else {
+            made.arms[0] = arms[0] + (points[1] - points[0]);
+        }
+        let law = Law::Range { lo: f64::NEG_INFINITY, hi: f64::INFINITY, softness: 0.0 };
+        let equal =
+            JointRow { is_angular: false, law, pushing: 0.0, target: 0.0, equation: None, is_motor: false };
+        let (linear, angular) = self.directions(pair[0].orientation);
+        for direction in linear {
+            made.add(direction, equal);
+        }
+        for direction in angular {
+            made.add(direction, JointRow { is_angular: true, ..equal });
+        }
+        let count = made.rows.len();
+        for (slot, row) in made.rows[..count].iter_mut().enumerate() {
+            let equation = |row: &JointRow| (!self.is_of_a_rate(row)).then_some([number, slot]);
+            row.row = row.row.map(|row| JointRow { equation: equation(&row), ..row });
+        }
+        if matches!(self.joint.kind, JointKind::Revolute | JointKind::Prismatic) {
+            self.along(&mut made, axis, self.value(pair), ahead);
+        }
+        made.rows
+    }
+
+    /// Limits, spring, motor and friction of the value.
+    fn along(&self, made: &mut Made<'_>, axis: DVec3, value: f64, ahead: Ahead) {
+        let is_angular = self.joint.kind == JointKind::Revolute;
+        let row = |law: Law, pushing: f64, target: f64| JointRow {
+            is_angular,
+            law,
+            pushing,
+            target,
+            equation: None,
+            is_motor: false,
+        };
+        let h = ahead.length;
+        // The rates that limits leave.
+        let (mut slowest, mut fastest) = (f64::NEG_INFINITY, f64::INFINITY);
+        if let Some([lo, hi]) = self.joint.limits {
+            let push = Law::Range { lo: 0.0, hi: f64::INFINITY, softness: 0.0 };
+            let least_of = |room: f64| if room >= 0.0 { -room / h } else { -TAKEN_BACK * room / ahead.step };
+            let [up, down] = [least_of(value - lo), least_of(hi - value)];
+            made.add(axis, row(push, up.min(0.0), up));
+            made.add(-axis, row(push, down.min(0.0), down));
+            (slowest, fastest) = (up.min(0.0), -down.min(0.0));
+        }
+        let motor = self.joint.motor;
+        if let Some((motor, rate)) =
+            motor.and_then(|motor| Some((motor, motor.hard_rate(value, ahead.step)?)))
+        {
+            // In a step that is flown in parts it sees to its rate in each of them, with what it has not spent of its impulse so far.
+            let most = motor.most * (ahead.passed + h);
+            let [lo, hi] = [(-most - ahead.spent).min(0.0), (most - ahead.spent).max(0.0)];
+            let law = Law::Range { lo, hi, softness: 0.0 };
+            // No rates obey a limit and a motor, without a bound on its force, that leads beyond it.
+            let rate = rate.min(fastest).max(slowest);
+            made.add(axis, JointRow { is_motor: true, ..row(law, rate, rate) });
+        }
+        if !ahead.forces {
+            return;
+        }
+        let soft = |stiffness: f64, damping: f64, off: f64, most: f64| {
+            let softness = 1.0 / (h * (h * stiffness + damping));
+            let law = Law::Range { lo: -most * h, hi: most * h, softness };
+            (law, off * h * stiffness * softness)
+        };
+        if let Some(spring) = self.joint.spring.filter(|spring| spring.stiffness + spring.damping > 0.0) {
+            let (law, rate) = soft(spring.stiffness, spring.damping, spring.rest - value, f64::INFINITY);
+            made.add(axis, row(law, rate, rate));
+        }
+        if let Some(motor) = motor
+            && let MotorTarget::Position(place) = motor.target
+            && motor.stiffness > 0.0
+        {
+            let (law, rate) = soft(motor.stiffness, motor.damping, place - value, motor.most);
+            made.add(axis, row(law, rate, rate));
+        }
+        if self.joint.friction > 0.0 {
+            let most = self.joint.friction * h;
+            made.add(axis, row(Law::Range { lo: -most, hi: most, softness: 0.0 }, 0.0, 0.0));
+        }
+    }
+}
+
+impl Motor {
+    /// The rate that it sees to at once, where it is not soft.
+    fn hard_rate(&self, value: f64, step: f64) -> Option<f64> {
+        match self.target {
+            MotorTarget::Velocity(rate) => Some(rate),
+            MotorTarget::Position(_) if self.stiffness > 0.0 => None,
+            MotorTarget::Position(place) => Some(TAKEN_BACK * (place - value) / step),
+        }
+    }
+}
+
+struct Made<'j> {
+    joined: &'j Joined,
+    number: usize,
+    arms: [DVec3; 2],
+    point: DVec3,
+    rows: Vec<ContactPoint>,
+}
+
+impl Made<'_> {
+    fn add(&mut self, direction: DVec3, row: JointRow) {
+        let [a, b] = self.joined.bodies;
+        self.rows.push(ContactPoint {
+            a,
+            b,
+            feature: FeaturePair::VertexFace { vertex: self.rows.len() as u32, face: self.number as u32 },
+            normal: direction,
+            tangents: tangents(direction),
+            distance: 0.0,
+            is_expected: false,
+            gap: 0.0,
+            arm_a: self.arms[0],
+            arm_b: self.arms[1],
+            point: self.point,
+            material: Material { restitution: 0.0, friction: 0.0 },
+            running: [0.0; 2],
+            row: Some(row),
+            impulse: 0.0,
+            sliding: [0.0; 2],
+        });
+    }
+}

@@ -1,0 +1,111 @@
+//! The joints of a simulation: added, taken out, driven and read. What they ask of a solve: [`crate::joint::rows`].
+
+use crate::joint::rows::Joined;
+use crate::{Joint, Motor, Simulation, SimulationError};
+
+impl Simulation {
+    /// Joins two bodies, or one with the world, where they are; the pair is ignored unless the joint says otherwise. The number of the joint.
+    ///
+    /// ```
+    /// use d2m_bvh::MeshTree;
+    /// use d2m_dynamics::{Body, Joint, JointKind, Simulation, SimulationOptions};
+    /// use glam::DVec3;
+    /// use std::sync::Arc;
+    /// let bar = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.05&z=0.05")?));
+    /// let mut simulation = Simulation::new(SimulationOptions::default())?;
+    /// let arm = simulation.add(&Body::new("arm", bar))?;
+    /// let pin = Joint::new(JointKind::Revolute, arm, None, DVec3::X * -0.5);
+    /// simulation.add_joint(&pin)?;
+    /// while simulation.time() < 1.0 {
+    ///     simulation.step()?;
+    ///     let end = simulation.pose(arm).transform_point(DVec3::X * -0.5);
+    ///     assert!((end + DVec3::X * 0.5).length() < 1e-4);
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SimulationError::BadJoint`]: numbers that cannot be used, or no body that could move. Nothing changes then.
+    pub fn add_joint(&mut self, joint: &Joint) -> Result<usize, SimulationError> {
+        let b = match joint.b {
+            Some(b) => self.place(b),
+            None => self.world()?,
+        };
+        let a = self.place(joint.a);
+        let joined = Joined::try_new(joint, [a, b], &self.bodies)?;
+        if !joint.collide {
+            self.ignored.insert((a.min(b), a.max(b)));
+        }
+        self.joints.push(joined);
+        self.drop_known(a);
+        self.drop_known(b);
+        Ok(self.joints.len() - 1)
+    }
+
+    /// Takes a joint out; its number never means another one. Its bodies go on passing through each other where they did: at a joint they
+    /// mostly overlap. [`Self::heed`] has them meet again.
+    ///
+    /// # Panics
+    /// If there is no such joint, or it was taken out.
+    ///
+    /// ```
+    /// # use d2m_dynamics::{Body, Joint, JointKind, Simulation, SimulationOptions};
+    /// # use glam::DVec3;
+    /// # use std::sync::Arc;
+    /// # let cube = Arc::new(d2m_bvh::MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5")?));
+    /// let mut simulation = Simulation::new(SimulationOptions::default())?;
+    /// let hung = simulation.add(&Body::new("hung", cube))?;
+    /// let nail = simulation.add_joint(&Joint::new(JointKind::Spherical, hung, None, DVec3::Y))?;
+    /// simulation.step()?;
+    /// assert!(simulation.position(hung).y.abs() < 1e-9);
+    /// simulation.remove_joint(nail);
+    /// simulation.step()?;
+    /// assert!(simulation.position(hung).y < -1e-4 && simulation.joint(nail).is_none());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn remove_joint(&mut self, joint: usize) {
+        let places = self.there(joint).bodies;
+        self.joints[joint].take_out();
+        for place in places {
+            self.drop_known(place);
+        }
+    }
+
+    /// A joint, if it was not taken out.
+    pub fn joint(&self, joint: usize) -> Option<&Joint> {
+        self.joints.get(joint).filter(|joined| !joined.is_gone()).map(|joined| &joined.joint)
+    }
+
+    /// Another motor of a joint, or none: so a robot is driven from step to step. Wakes its bodies.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadJoint`]: numbers that cannot be used. Nothing changes then.
+    ///
+    /// # Panics
+    /// If there is no such joint, or it was taken out.
+    pub fn set_motor(&mut self, joint: usize, motor: Option<Motor>) -> Result<(), SimulationError> {
+        let joined = self.there(joint);
+        let changed = Joint { motor, ..joined.joint.clone() };
+        Joined::try_new(&changed, joined.bodies, &self.bodies)?;
+        self.joints[joint].joint = changed;
+        for place in self.joints[joint].bodies {
+            self.wake_place(place);
+        }
+        Ok(())
+    }
+
+    fn there(&self, joint: usize) -> &Joined {
+        let joined = &self.joints[joint];
+        assert!(!joined.is_gone(), "joint {joint} was taken out, or one of its bodies");
+        joined
+    }
+
+    /// The value of a joint: how far b has turned about the axis, or moved along it, against a; zero of other kinds.
+    ///
+    /// # Panics
+    /// If there is no such joint, or it was taken out.
+    pub fn joint_value(&self, joint: usize) -> f64 {
+        let joined = self.there(joint);
+        joined.value(joined.bodies.map(|i| &self.bodies[i]))
+    }
+}
