@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::load::Loaded;
 use crate::output::note;
 use crate::trials::Trial;
-use crate::unlike_sizes::{size_of, warn_of_sizes};
+use crate::unlike_sizes::warn_of_sizes;
 use d2m::bvh::{
     Budget, Clearance, ClearanceOptions, ContactSpan, Departure, DistanceOptions, MeshTree, Mode, Moving,
     Posed, QueryError, QueryOptions, Solid, TimeOfContact, TriMesh, Window, clearance, contact_spans,
@@ -13,8 +13,7 @@ use d2m::bvh::{
 };
 use d2m::motion::{AnyMotion, RigidMotion};
 use d2m::paper::{self, SphereTree};
-use d2m_io::query_fault;
-use glam::DVec3;
+use d2m_io::{check_keyframes, query_fault};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::time::{Duration, Instant};
 
@@ -283,7 +282,7 @@ impl Pair {
 
 /// The diagonals of the boxes around two bodies.
 fn sizes_of(bodies: [&Body; 2], radii: [f64; 2]) -> [f64; 2] {
-    [0, 1].map(|k| size_of(bodies[k].mesh()) + 2.0 * radii[k])
+    [0, 1].map(|k| bodies[k].mesh().size() + 2.0 * radii[k])
 }
 
 /// An error of a query, with the motion that it comes from.
@@ -297,13 +296,7 @@ fn part(start: f64, end: f64) -> Result<Window, Failure> {
 
 /// Spans of keyframes must meet, to a part of the body's size.
 pub(crate) fn check_size(place: &str, motion: &AnyMotion, body: &Body) -> Result<(), Failure> {
-    if !matches!(motion, AnyMotion::Keyframes(_)) {
-        return Ok(());
-    }
-    let vertices = body.mesh().vertices();
-    let (lo, hi) =
-        vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
-    motion.check_size((hi - lo).length()).map_err(|error| Failure::at(place, error))
+    check_keyframes(motion, body.mesh()).map_err(|error| Failure::at(place, error))
 }
 
 /// The options of queries, but for what counts as a body.

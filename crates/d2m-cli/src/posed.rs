@@ -7,7 +7,7 @@ use crate::load::read;
 use crate::motion::file_hint;
 use crate::orientation::{warn_of_json, warn_of_text};
 use crate::sizes::{load_both, sizes_line};
-use crate::unlike_sizes::{size_of, warn_of_sizes};
+use crate::unlike_sizes::warn_of_sizes;
 use d2m::bvh::{MeshTree, Posed, QueryError, Solid};
 use d2m::motion::{ConstantTwist, Pose};
 use glam::DVec3;
@@ -64,7 +64,7 @@ impl PosedBodies {
     }
 
     fn sizes(&self) -> [f64; 2] {
-        [0, 1].map(|k| size_of(self.both[k].tree.mesh()) + 2.0 * self.radii[k])
+        [0, 1].map(|k| self.both[k].tree.mesh().size() + 2.0 * self.radii[k])
     }
 
     /// What counts as a body, of each.

@@ -1,18 +1,9 @@
 //! Warnings of bodies one of which is probably in another unit.
 
 use crate::output::{digits, note};
-use d2m::bvh::TriMesh;
-use glam::DVec3;
 
 /// Diagonals of boxes that differ by more than this are probably in two units.
 const UNLIKELY: f64 = 100.0;
-
-/// The diagonal of the box around a mesh.
-pub(crate) fn size_of(mesh: &TriMesh) -> f64 {
-    let low = mesh.vertices().iter().copied().fold(DVec3::INFINITY, DVec3::min);
-    let high = mesh.vertices().iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-    (high - low).length()
-}
 
 /// Warns of two bodies of very unlike sizes.
 pub(crate) fn warn_of_sizes(a: f64, b: f64) {

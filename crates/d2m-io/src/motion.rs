@@ -1,7 +1,8 @@
 //! Files of motions.
 
 use crate::{IoError, parse_json, read_bytes};
-use d2m_motion::AnyMotion;
+use d2m_bvh::TriMesh;
+use d2m_motion::{AnyMotion, MotionError};
 use std::path::Path;
 
 /// The motion of a JSON file: a constant twist, keyframes or a chain of joints, in the forms of [`AnyMotion`].
@@ -21,4 +22,28 @@ use std::path::Path;
 pub fn read_motion(path: impl AsRef<Path>) -> Result<AnyMotion, IoError> {
     let path = path.as_ref();
     parse_json(&read_bytes(path)?).map_err(|error| error.in_file(path.display().to_string()))
+}
+
+/// Do the spans of a motion's keyframes meet, for a body of the size of this mesh? Other motions have no gaps.
+///
+/// ```
+/// use d2m_bvh::TriMesh;
+/// use d2m_motion::{AnyMotion, ConstantTwist, Keyframes};
+/// use glam::DVec3;
+/// let mesh = TriMesh::from_arrays(&[[0.0; 3], [3.0, 0.0, 0.0], [0.0, 4.0, 0.0]], &[[0, 1, 2]])?;
+/// let at = |x: f64| ConstantTwist::REST.with_position(DVec3::X * x);
+/// let path = |gap: f64| Keyframes::try_from_spans(vec![0.0, 1.0, 2.0], vec![at(100.0), at(100.0 + gap)]).map(AnyMotion::from);
+/// assert!(d2m_io::check_keyframes(&path(4e-9)?, &mesh).is_ok());
+/// let error = d2m_io::check_keyframes(&path(6e-9)?, &mesh).unwrap_err();
+/// assert!(error.to_string().contains("keyframe 1"), "{error}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`MotionError`] of [`AnyMotion::check_size`]: the joint with the widest gap.
+pub fn check_keyframes(motion: &AnyMotion, mesh: &TriMesh) -> Result<(), MotionError> {
+    match motion {
+        AnyMotion::Keyframes(keyframes) => keyframes.check_size(mesh.size()),
+        _ => Ok(()),
+    }
 }

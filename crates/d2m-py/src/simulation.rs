@@ -205,7 +205,7 @@ impl Simulation {
         checked: bool,
     ) -> PyResult<usize> {
         let (tree, solid) = body_argument(tree, solid)?;
-        let kind = kind_argument(kind, motion, 2.0 * tree.radius())?;
+        let kind = kind_argument(kind, motion, tree.mesh().size())?;
         let pose = pose_argument(pose, "pose")?;
         let mass = mass_of(density, mass, center, inertia)?;
         let mut inner = self.lock(py);
@@ -381,15 +381,15 @@ impl Simulation {
     }
 }
 
-/// A kind by its word, with the motion of a kinematic body of this diameter.
-pub(crate) fn kind_argument(kind: &str, motion: Option<&Bound<'_, PyAny>>, diameter: f64) -> PyResult<Kind> {
+/// A kind by its word, with the motion of a kinematic body of this size.
+pub(crate) fn kind_argument(kind: &str, motion: Option<&Bound<'_, PyAny>>, size: f64) -> PyResult<Kind> {
     match (kind, motion) {
         ("dynamic", None) => Ok(Kind::Dynamic),
         ("static", None) => Ok(Kind::Static),
         ("driven", None) => Ok(Kind::Driven),
         ("kinematic", Some(motion)) => {
             let motion = motion_argument(Some(motion), "motion")?;
-            motion.check_diameter(diameter).or_raise()?;
+            motion.check_for(size).or_raise()?;
             Ok(Kind::Kinematic(motion.shared()))
         }
         ("kinematic", None) => Err(Fault::new("motion: a kinematic body needs one").into()),

@@ -131,11 +131,11 @@ impl Simulation {
         kind: &str,
         motion: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
-        let diameter = {
+        let size = {
             let inner = self.lock(body.py());
             2.0 * inner.engine.radius(inner.find(body)?)
         };
-        let kind = kind_argument(kind, motion, diameter)?;
+        let kind = kind_argument(kind, motion, size)?;
         self.change(body, |engine, id| engine.set_kind(id, kind))
     }
 

@@ -2,7 +2,7 @@
 
 use d2m::bvh::{MeshTree, Window};
 use d2m::motion::{AnyMotion, ConstantTwist, CoveredMotion, Pose};
-use d2m_io::parse_json;
+use d2m_io::{check_keyframes, parse_json};
 use glam::DVec3;
 
 /// Reads JSON in the forms of the formats, or `x=…;q=…;v=…;w=…` as the command takes it. `place` stands in messages.
@@ -25,16 +25,8 @@ pub(crate) fn read_motion(
     if let Err(outside) = CoveredMotion::try_new(&motion, window.start(), window.end()) {
         return Err(format!("{place}: {outside}"));
     }
-    if matches!(motion, AnyMotion::Keyframes(_)) {
-        let (low, high) = extent(tree);
-        motion.check_size((high - low).length()).map_err(|error| format!("{place}: {error}"))?;
-    }
+    check_keyframes(&motion, tree.mesh()).map_err(|error| format!("{place}: {error}"))?;
     Ok(motion)
-}
-
-fn extent(tree: &MeshTree) -> (DVec3, DVec3) {
-    let vertices = tree.mesh().vertices();
-    vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
 }
 
 /// The pose of a body at rest: x, q and at.

@@ -11,7 +11,7 @@ use crate::report::{evidence_sentence, vector};
 use crate::robot_path::read_path;
 use crate::robot_scene::RobotSceneFile;
 use crate::travel::Travel;
-use crate::unlike_sizes::{size_of, unlike};
+use crate::unlike_sizes::unlike;
 use crate::view::picture_of_path;
 use d2m::bvh::{QueryOptions, Window};
 use d2m_robot::{
@@ -137,7 +137,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
 fn unlike_sizes(bodies: &PathBodies<'_>, robot: &Robot) -> Vec<String> {
     let size = |body: usize| {
         let moving = bodies.moving(body);
-        (bodies.name(body), size_of(moving.body.mesh()) + 2.0 * moving.radius)
+        (bodies.name(body), moving.body.mesh().size() + 2.0 * moving.radius)
     };
     let (links, others): (Vec<_>, Vec<_>) =
         (0..bodies.len()).map(size).partition(|(name, _)| robot.find_link(name).is_some());

@@ -4,10 +4,9 @@ use crate::failure::Failure;
 use crate::mesh_library::MeshLibrary;
 use crate::motion::require_window;
 use crate::travel::{Travel, warn_of_turn};
-use crate::unlike_sizes::size_of;
 use d2m::bvh::{MeshTree, Moving, Solid, Window};
 use d2m::motion::AnyMotion;
-use d2m_io::SceneEntry;
+use d2m_io::{SceneEntry, check_keyframes};
 use serde_json::Value;
 use std::sync::Arc;
 
@@ -43,9 +42,7 @@ impl SceneBody {
         let SceneEntry { name, mesh, scale, motion, group, solid, radius, .. } = entry;
         let tree =
             library.tree(&mesh, scale).map_err(|error| Failure::at(format!("{place}, mesh"), error))?;
-        // Twice the radius is a bound on the size that spans of keyframes have to meet by.
-        motion
-            .check_size(2.0 * tree.radius())
+        check_keyframes(&motion, tree.mesh())
             .map_err(|error| Failure::at(format!("{place}, motion"), error))?;
         require_window(&format!("{place}, motion"), &motion, window)?;
         warn_of_turn(&format!("{place}, motion"), Travel::of(&motion, window));
@@ -62,7 +59,7 @@ impl SceneBody {
 
     /// The diagonal of the box around the body.
     pub(crate) fn size(&self) -> f64 {
-        size_of(self.tree.mesh()) + 2.0 * self.radius
+        self.tree.mesh().size() + 2.0 * self.radius
     }
 
     /// Its name and size.

@@ -215,13 +215,7 @@ fn check(mesh: &TriMesh) -> Result<(), MassError> {
 
 /// Integrals of density one over what these triangles enclose; a mesh that is oriented inward counts as outward.
 fn integrate(mesh: &TriMesh, counts: impl Fn(usize) -> bool) -> MassProperties {
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for vertices in mesh.triangles() {
-        for &index in vertices {
-            let p = mesh.vertices()[index as usize];
-            (low, high) = (low.min(p), high.max(p));
-        }
-    }
+    let [low, high] = mesh.extent();
     let origin = 0.5 * (low + high);
     let mut volume = Sum::default();
     let mut first = [Sum::default(); 3];

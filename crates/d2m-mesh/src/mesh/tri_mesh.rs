@@ -186,6 +186,28 @@ impl TriMesh {
         [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]]
     }
 
+    /// The least and the greatest coordinates of the corners of its triangles, body frame.
+    ///
+    /// ```
+    /// use d2m_mesh::TriMesh;
+    /// // The last vertex belongs to no triangle.
+    /// let vertices = [[0.0; 3], [3.0, 0.0, 0.0], [0.0, 4.0, 0.0], [9.0, 9.0, 9.0]];
+    /// let mesh = TriMesh::from_arrays(&vertices, &[[0, 1, 2]])?;
+    /// assert_eq!(mesh.extent().map(|p| p.to_array()), [[0.0; 3], [3.0, 4.0, 0.0]]);
+    /// assert_eq!(mesh.size(), 5.0);
+    /// # Ok::<(), d2m_mesh::MeshError>(())
+    /// ```
+    pub fn extent(&self) -> [DVec3; 2] {
+        let corners = self.triangles.iter().flatten().map(|&vertex| self.vertices[vertex as usize]);
+        corners.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
+    }
+
+    /// How large the body is: the diagonal of the box of its [`extent`](Self::extent), in its unit of length.
+    pub fn size(&self) -> f64 {
+        let [low, high] = self.extent();
+        (high - low).length()
+    }
+
     /// Gives the two lists back.
     ///
     /// ```

@@ -75,13 +75,10 @@ impl Validation {
     /// May panic if `topology` belongs to another mesh.
     pub fn with_topology(mesh: &TriMesh, topology: &Topology) -> Self {
         let mut used = vec![false; mesh.vertex_count()];
-        let mut low = DVec3::INFINITY;
-        let mut high = DVec3::NEG_INFINITY;
         for &vertex in mesh.triangles().iter().flatten() {
             used[vertex as usize] = true;
-            low = low.min(mesh.vertices()[vertex as usize]);
-            high = high.max(mesh.vertices()[vertex as usize]);
         }
+        let [low, high] = mesh.extent();
         let middle = low + (high - low) * 0.5;
         let (mut area, mut volume, mut degenerate_triangles) = (0.0, 0.0, 0);
         for triangle in 0..mesh.triangle_count() {

@@ -18,6 +18,7 @@ use crate::pose::Pose;
 use d2m::SharedMotion;
 use d2m::bvh::MeshTree;
 use d2m::motion::{AnyMotion, RigidMotion};
+use d2m_io::check_keyframes;
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
@@ -68,17 +69,16 @@ impl Form {
 
     /// Spans of keyframes must meet, to a part of the body's size.
     pub(crate) fn check_size(&self, tree: &MeshTree) -> Result<(), Fault> {
-        // The radius is about the middle of the bounding box: the size is that of its diagonal.
-        self.check_diameter(2.0 * tree.radius())
+        let Self::Any(motion) = self else { return Ok(()) };
+        Ok(check_keyframes(motion, tree.mesh())?)
     }
 
-    /// The same for a body of this diameter.
-    pub(crate) fn check_diameter(&self, diameter: f64) -> Result<(), Fault> {
-        let Self::Any(motion) = self else { return Ok(()) };
-        if !matches!(**motion, AnyMotion::Keyframes(_)) {
-            return Ok(());
+    /// The same for a body of this size, which may have several meshes.
+    pub(crate) fn check_for(&self, size: f64) -> Result<(), Fault> {
+        match self {
+            Self::Any(motion) => Ok(motion.check_size(size)?),
+            Self::Spline(_) => Ok(()),
         }
-        Ok(motion.check_size(diameter)?)
     }
 }
 
