@@ -247,6 +247,33 @@ fn contacts_at_joints_are_found_once() {
     }
 }
 
+/// A body that has turned some 10⁴ to 10⁸ times since its reference time, against one that is no single twist: as if it began with the window.
+#[test]
+fn many_turns_before_the_window_change_no_answer() {
+    let (a, b) = (cube(1.0), cube(1.0));
+    let options = QueryOptions::default();
+    for (start, rate, reach) in [(1e3, 200.0, 3.3), (1e3, 200.0, 40.0), (1e4, 20.0, 3.3), (3e5, 1e3, 3.3)] {
+        let pose = |x: f64| Pose { translation: DVec3::new(x, 0.2, 0.0), ..Pose::IDENTITY };
+        let times = [start, start + 0.25, start + 0.5];
+        let frames =
+            [(times[0], pose(-reach)), (times[1], pose(-0.7 * reach)), (times[2], pose(-0.5 * reach))];
+        let path = Keyframes::try_new(&frames, Span::Linear).unwrap();
+        let far = ConstantTwist::REST.with_angular_velocity(DVec3::Z * rate);
+        let window = Window::try_new(times[0], times[2]).unwrap();
+        let [early, late] = [far, far.rebase(times[0])].map(|b_moves| {
+            let answer = query([&a, &b], [&path, &b_moves], window, &options);
+            judge([&a, &b], [&path, &b_moves], (window, DVec3::ZERO), &answer).unwrap();
+            assert!(!matches!(answer, TimeOfContact::Undecided { .. }), "{start} {reach}: {answer:?}");
+            answer.contact().map(|contact| contact.time_lo)
+        });
+        assert_eq!(early.is_some(), reach < 10.0, "{start}");
+        if let Some((early, late)) = early.zip(late) {
+            // Rates, rebased, are as they were; orientations differ by rounding.
+            assert!((early - late).abs() < 1e-9, "{early} {late}");
+        }
+    }
+}
+
 #[test]
 fn many_spans_are_skipped_by_spheres() {
     let (a, b) = (torus(30, 14, 1.0), torus(25, 13, 0.8));

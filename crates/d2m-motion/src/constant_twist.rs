@@ -233,21 +233,26 @@ impl ConstantTwist {
         up(length_up(self.angular_velocity) * time.abs()) + f64::MIN_POSITIVE
     }
 
-    /// In plain floating point: `u(96 + 8|ω||t − t_ref|)` for the rotation, `4u(|x0| + |v(t − t_ref)|)` for the
-    /// position, u = 2⁻⁵³ (docs/theory/features.md, "Any C² motion"). `None` where that is not proven.
+    /// In plain floating point: `u(96 + 8|ω||t − t_ref|)` for the rotation, and no more than 4u after many turns, from double-double;
+    /// `4u(|x0| + |v(t − t_ref)|)` for the position, u = 2⁻⁵³ (docs/theory/features.md, "Any C² motion"). `None` where that is not proven.
     fn plain_state(&self, t: f64) -> Option<CertifiedState> {
         let s = t - self.reference_time;
         let angle = self.bound_turn(s);
         // Also NaN is not proven.
         let start = from_quat_rounded(self.orientation).filter(|_| angle < 0.5 * LARGEST_ANGLE)?;
+        let (rotation, rotation_radius) = if angle > SOME_TURNS {
+            (self.rotation_dd(t).to_mat3(), ROUNDED_ONCE)
+        } else {
+            (Spin::new(self.angular_velocity).rotation(s) * start, UNIT * (96.0 + 8.0 * angle))
+        };
         let travelled = self.linear_velocity * s;
         Some(CertifiedState {
-            rotation: Spin::new(self.angular_velocity).rotation(s) * start,
+            rotation,
             position: self.position + travelled,
             at: self.at,
             linear: self.linear_velocity,
             angular: self.angular_velocity,
-            rotation_radius: UNIT * (96.0 + 8.0 * angle),
+            rotation_radius,
             position_radius: 4.0 * UNIT * (self.position.length() + travelled.length()) + UNDERFLOW,
             linear_radius: 0.0,
             angular_radius: 0.0,
@@ -265,6 +270,12 @@ fn around(m: &DMat3, radius: f64) -> IntervalMat3 {
     IntervalMat3::from_rows([row(t.x_axis), row(t.y_axis), row(t.z_axis)])
 }
 
+/// Radians from which a rotation is made in double-double where its rounding is counted: from there on that of the angle, 8u a radian, is worth twenty
+/// times as long.
+const SOME_TURNS: f64 = 1024.0;
+/// What rounding the entries of such a rotation once leaves (Frobenius norm √3 of them: √3 u), with the errors of double-double before it: 2⁻¹⁰⁰ of
+/// the angle, which is below 2³⁰, and less than 2⁻⁹⁵ besides.
+const ROUNDED_ONCE: f64 = 4.0 * UNIT;
 /// Radians from which a pose is worth more than double precision: the rounding of the angle grows with it.
 const FEW_TURNS: f64 = 64.0;
 /// Radians up to which the extended sine and cosine are good: 2³⁰.
