@@ -48,6 +48,8 @@ impl Effort {
     }
 }
 
+/// Ratio of masses beyond which sweeps converge too slowly, and Newton's method does on rows as hard as it asks for.
+pub(super) const MOST_RATIO: f64 = 30.0;
 /// Of rows of softness r a round leaves r/(r + m/M) of what the heaviest body, of mass M, asks for from the lightest one, of mass m, so no
 /// more than this part of m/M.
 const SHARE: f64 = 1e-2;
@@ -118,10 +120,14 @@ impl System {
         let mut anderson = Anderson::default();
         let most_soft = if self.has_joints || self.is_long() { JOINED } else { MOST_SOFT };
         let mut soft = (SHARE / self.ratio()).clamp(LEAST_SOFT, most_soft);
+        let is_uneven = self.ratio() > MOST_RATIO && !effort.is_short();
+        // How hard they have to be, and how soft at least in the first round after shifts have changed.
+        let (hard, mut softest) = (soft, 0.0_f64);
         let hardest = (HARDEST * SHARE / self.ratio()).max(LEAST_SOFT);
         let (mut last, mut losses) = (f64::INFINITY, 0);
         for _ in 0..effort.rounds {
             let (center, shift, velocity) = state;
+            let kept = (center.clone(), shift.clone(), velocity.clone());
             let found = vec![Projected { impulse: [0.0; 3], slope: None }; self.blocks.len()];
             let mut round = Convex {
                 system: self,
@@ -140,7 +146,11 @@ impl System {
             let Convex { shift, velocity, .. } = round;
             self.set(&free, &impulses);
             let residual = self.residual(targets);
-            losses += 1;
+            // Impulses of velocities that are not the minimum's mean nothing: the same round on softer rows, and from what these lead to on harder ones
+            // again. The shifts stay as they are meanwhile, for what heavy bodies sink in on soft rows is no sliding.
+            let is_lost = is_uneven && !is_found && soft < MOST_SOFT;
+            let is_on_way = is_uneven && is_found && soft > hard;
+            losses += u32::from(!is_lost && !is_on_way);
             if best.as_ref().is_none_or(|best| residual < best.0) {
                 best = Some((residual, impulses.clone()));
                 losses = 0;
@@ -153,7 +163,18 @@ impl System {
             if residual <= aim || stops || is_left {
                 break;
             }
+            if is_lost {
+                soft = (SOFTER * soft).min(MOST_SOFT);
+                softest = softest.max(soft);
+                state = kept;
+                continue;
+            }
             last = residual;
+            if is_on_way {
+                soft = (HARDER * soft).max(hard);
+                state = (impulses, shift, velocity);
+                continue;
+            }
             let yielded = |of: &Self| {
                 let own = |k: usize| of.natural_map(k, targets[k], shift[k]);
                 (0..targets.len()).map(own).fold(0.0, f64::max)
@@ -169,9 +190,7 @@ impl System {
             if start == Start::Stuck {
                 break;
             }
-            if !is_found {
-                soft = (SOFTER * soft).min(MOST_SOFT);
-            }
+            soft = if is_found { soft.max(softest) } else { (SOFTER * soft).min(MOST_SOFT) };
             let answer: Vec<f64> = self.blocks.iter().map(|block| slides(block, self)).collect();
             state = (impulses, anderson.next(&shift, answer), velocity);
         }

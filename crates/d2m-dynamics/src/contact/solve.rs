@@ -2,7 +2,7 @@
 
 use super::accuracy::{Accuracy, Company, LOOSE};
 use super::block::Block;
-use super::newton::{Effort, Start};
+use super::newton::{Effort, MOST_RATIO, Start};
 use super::solver_body::SolverBody;
 use super::sweeps::Pace;
 use super::system::System;
@@ -18,8 +18,6 @@ const FEW: usize = 20;
 const SOME: usize = 64;
 /// Contacts up to which solutions are exact where bodies are about to rest: what sweeps leave at each level of a pile adds up to its top.
 const SETTLING: usize = 1 << 14;
-/// Ratio of masses beyond which sweeps converge too slowly.
-const MOST_RATIO: f64 = 30.0;
 /// Sweeps at most, where they come first, and where they come last.
 const FIRST: u32 = 192;
 const SWEEPS: u32 = 60;
@@ -100,14 +98,8 @@ impl System {
                 start = Start::Present;
             }
         }
-        if self.is_uneven_crowd(accuracy) {
-            let short =
-                |system: &mut Self| system.solve_direct(targets, accuracy, Start::Present, Effort::SHORT);
-            residual = self.better(residual, 0.0, short);
-            if residual <= self.enough(accuracy) {
-                return residual;
-            }
-            start = Start::Present;
+        if self.is_uneven_crowd(accuracy) && residual <= self.enough(accuracy) {
+            return residual;
         }
         // What slips may obey the law as well as what sticks.
         let tolerance = self.tolerance(accuracy);
