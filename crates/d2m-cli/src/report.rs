@@ -54,8 +54,11 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
         let _ = writeln!(text, "  {label:<12}{value}"); // writing to a string cannot fail
     };
     let [start, end] = [window.start(), window.end()].map(short);
+    // What was in contact at the start is certified from when it was proven apart.
+    let left = further.departure.as_ref().filter(|departure| departure.start != StartState::Apart);
+    let left = left.and_then(|departure| Window::try_new(departure.left?.hi, window.end()).ok());
     let AnswerLines { headline, lines, .. } =
-        answer_lines(&answer.verdict, window, pair.options(), further.clearance.as_ref());
+        answer_lines(&answer.verdict, left.unwrap_or(window), pair.options(), further.clearance.as_ref());
     for [label, value] in lines {
         line(&label, value);
     }

@@ -44,7 +44,10 @@ fn a_part_leaves_its_table() {
         r#""start": "leave", "pairs": [{"a": "ceiling", "b": "hand", "start": "report"}],"#,
     ];
     for start in leaving {
-        assert_eq!(run("1", start)["status"], "free", "{start}");
+        let free = run("1", start);
+        assert_eq!(free["status"], "free", "{start}");
+        assert!(free["left"][0]["start"] == "touching" && free["left"][0]["b"] == "table", "{free}");
+        assert!(free["left"][0]["left"][1].as_f64().is_some_and(|time| time < 1e-6), "{free}");
         // The hand's top is at 0.7: it meets the ceiling at 1.3 of the way.
         let met = run("2", start);
         assert_eq!(met["status"], "contact", "{met}");

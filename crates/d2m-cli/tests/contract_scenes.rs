@@ -52,6 +52,15 @@ fn contacts_at_the_start_are_let_go() {
     close(&met["toc"], 1.75);
     close(&met["separation"], 0.5);
     assert_eq!(met["left"], serde_json::json!([0.0, 0.0]), "{met}");
+    // The part leaves the table for good: that it was in contact is said beside the contacts.
+    let answer: Value = serde_json::from_str(&stdout(&d2m(&["scene", &path, "--json"]))).unwrap();
+    let left = answer["left"].as_array().unwrap();
+    assert!(left.len() == 1 && left[0]["start"] == "touching", "{answer}");
+    assert_eq!([&left[0]["a"], &left[0]["b"]], [&Value::from("table"), &"part".into()]);
+    assert!(left[0]["left"][1].as_f64().is_some_and(|time| time > 0.0 && time < 1e-6), "{answer}");
+    let words = stdout(&d2m(&["scene", &path]));
+    assert!(words.contains("but for what was in contact at the start until it had parted"), "{words}");
+    assert!(words.contains("left: table \u{2013} part: touching at the start, proven apart at"), "{words}");
     // With a word that is none, or other names.
     for (from, to, words) in [
         (

@@ -32,7 +32,8 @@ use d2m_bvh::Contact;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[must_use = "it is a certificate: what is not read is not known to be safe"]
 pub enum PathAnswer {
-    /// Certified: no pair meets at any time of the path.
+    /// Certified: no pair meets at any time of the path. With [`Start::Leave`](d2m_bvh::Start::Leave) that holds of pairs in contact at the start from
+    /// the time on at which they are proven to have parted, here and below.
     #[non_exhaustive]
     Free {
         /// The end of the path.

@@ -54,8 +54,8 @@ of bodies or groups; pairs states what two bodies have of their own. With start 
 are proven apart (\"left\": [lo, hi]), and the answer is what they meet then; those that never part are in contact from the start.
 
 The answer lists the first contact of each pair, sorted by time; pairs that are proven apart all the time are left out. With --first the
-search stops at the first contact of all; contacts whose time brackets overlap its bracket are listed too. Before a bracket nothing of
-the pair meets: that is proven. The answers are bitwise the same at any number of threads.
+search stops at the first contact of all; contacts whose time brackets overlap its bracket are listed too, and of several at the very
+start at least one. Before a bracket nothing of the pair meets: that is proven. The answers are bitwise the same at any number of threads.
 
 Exit codes: 0 answered, 2 bad usage, 3 bad input; with --exit-status 10 contact, 11 separated, 12 undecided.
 

@@ -1,5 +1,6 @@
 //! `d2m robot`: is a planned path of a robot free of contact?
 
+use super::let_go::{LetGo, at_start, exception};
 use super::robot_proof::{Proof, prove};
 use crate::arguments::RobotArguments;
 use crate::engine::{number, threads, time_limit};
@@ -13,11 +14,12 @@ use crate::robot_scene::RobotSceneFile;
 use crate::travel::Travel;
 use crate::unlike_sizes::unlike;
 use crate::view::picture_of_path;
-use d2m::bvh::{QueryOptions, Window};
+use d2m::bvh::{QueryOptions, StartState, Window};
 use d2m_robot::{
     JointType, LimitWarning, PathAnswer, PathBodies, PathClearance, PathContact, Robot, RobotOptions,
     RobotScene, Srdf, Trajectory,
 };
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -102,6 +104,11 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     } else {
         None
     };
+    let bodies = scene.bodies_along(&path).map_err(fault)?;
+    let let_go = pool.install(|| let_go(&bodies, &answer));
+    let start = answer.contact().map(|found| {
+        at_start(found.bodies.map(|body| bodies.moving(body)), window, &bodies.pair_options(found.bodies))
+    });
     let proof = if arguments.verify {
         Some(prove(&scene.bodies_along(&path).map_err(fault)?, &answer)?)
     } else {
@@ -112,10 +119,10 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
         page.write(&picture_of_path(&bodies, window, &answer).to_html())?;
     }
     print(&if arguments.json {
-        let further = Further { checked, clearance, proof };
+        let further = Further { checked, clearance, proof, let_go, start };
         json(&answer, window, &warnings, &further)
     } else {
-        text(&answer, window, options.min_separation)
+        text(&answer, window, options.min_separation, &let_go)
             + &format!("  checked     {} pairs of {} bodies\n", checked.pairs, checked.bodies)
             + &clearance.as_ref().map_or(String::new(), nearness)
             + &proof.as_ref().map_or(String::new(), |proof| match proof {
@@ -195,6 +202,21 @@ struct Further {
     checked: Checked,
     clearance: Option<PathClearance>,
     proof: Option<Proof>,
+    let_go: Vec<LetGo>,
+    /// How the bodies of the contact stood at the start of the path.
+    start: Option<StartState>,
+}
+
+/// The pairs whose contact at the start was let go and that are not the answer.
+fn let_go(bodies: &PathBodies<'_>, answer: &PathAnswer) -> Vec<LetGo> {
+    let of = |&pair: &[usize; 2]| {
+        if answer.contact().is_some_and(|found| found.bodies == pair && found.contact.left.is_none()) {
+            return None;
+        }
+        let moving = pair.map(|body| bodies.moving(body));
+        LetGo::of(pair.map(|body| bodies.name(body)), moving, bodies.window(), &bodies.pair_options(pair))
+    };
+    bodies.pairs().par_iter().filter_map(of).collect()
 }
 
 /// The answer for a program.
@@ -202,7 +224,7 @@ fn json(
     answer: &PathAnswer,
     window: Window,
     warnings: &[LimitWarning],
-    Further { checked, clearance, proof }: &Further,
+    Further { checked, clearance, proof, let_go, start }: &Further,
 ) -> String {
     let mut object = json!({
         "status": status(answer),
@@ -230,7 +252,7 @@ fn json(
             put("point", json!(contact.point_a.to_array()));
             put("normal", json!(contact.normal.to_array()));
             put("evidence", json!(contact.evidence.to_string()));
-            put("start", json!(crate::report::start_in_json(contact.start)));
+            put("start", json!(crate::report::start_in_json(start.unwrap_or(contact.start))));
         }
         PathAnswer::Free { .. } => {}
     }
@@ -239,6 +261,9 @@ fn json(
         put("b", json!(b));
         put("clearance", json!([lower, upper]));
         put("clearance_time", json!(time));
+    }
+    if !let_go.is_empty() {
+        put("left", let_go.iter().map(LetGo::json).collect());
     }
     if let Some(proof) = proof {
         put("verified", json!(matches!(proof, Proof::Verified(_))));
@@ -265,13 +290,14 @@ const fn status(answer: &PathAnswer) -> &'static str {
 }
 
 /// The answer for a person.
-fn text(answer: &PathAnswer, window: Window, min_separation: f64) -> String {
+fn text(answer: &PathAnswer, window: Window, min_separation: f64, let_go: &[LetGo]) -> String {
     let [start, end] = [window.start(), window.end()].map(short);
     let kept = if min_separation > 0.0 {
         format!(", all pairs further apart than {}", short(min_separation))
     } else {
         String::new()
     };
+    let kept = kept + exception(let_go);
     let mut text = match answer {
         PathAnswer::Free { .. } => format!("FREE: certified, no contact from {start} to {end}{kept}\n"),
         PathAnswer::Undecided { free_until, a, b, .. } => format!(
@@ -292,6 +318,9 @@ fn text(answer: &PathAnswer, window: Window, min_separation: f64) -> String {
         let _ = writeln!(text, "  separation  {:.4e} left then", contact.separation);
         let _ = writeln!(text, "  point       {} on {}", vector(contact.point_a), found.a);
         let _ = writeln!(text, "  normal      {} from {} to {}", vector(contact.normal), found.a, found.b);
+    }
+    for pair in let_go {
+        let _ = writeln!(text, "  left        {}", pair.words());
     }
     text
 }

@@ -1,5 +1,6 @@
 //! `d2m scene`: the contacts of many bodies.
 
+use super::let_go::{LetGo, at_start, exception};
 use super::scene_question::sizes_line_of;
 use crate::arguments::SceneArguments;
 use crate::engine::{threads, time_limit};
@@ -10,8 +11,9 @@ use crate::output::{print_answer, progress_bar, short};
 use crate::report::{feature_field, start_in_json, start_word, vector};
 use crate::scene::{Scene, SceneBody};
 use crate::verification::{Bodies, Proof, joined};
-use d2m::bvh::{Contact, QueryOptions, Start, StartState, TimeOfContact, Window, time_of_contact};
+use d2m::bvh::{Contact, QueryOptions, Start, StartState, TimeOfContact, Window};
 use d2m::{BodyId, FirstContact, PairContact, WorldError};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -31,23 +33,11 @@ impl Row {
             (TimeOfContact::Contact(contact), Start::Leave) => Some(match contact.left {
                 None => contact.start,
                 Some(left) if left.hi <= scene.window.start() => StartState::Apart,
-                Some(_) => at_start(scene, bodies, options.with_start(Start::Report)),
+                Some(_) => at_start(bodies.map(|body| scene.bodies[body].moving()), scene.window, &options),
             }),
             _ => None,
         };
         Self { bodies, answer, left_from }
-    }
-}
-
-/// How bodies that part later stand at the start.
-fn at_start(scene: &Scene, bodies: [usize; 2], options: QueryOptions) -> StartState {
-    let [a, b] = bodies.map(|body| scene.bodies[body].moving());
-    let start = scene.window.start();
-    let found = Window::try_new(start, start).ok().map(|now| time_of_contact(a, b, now, &options));
-    match found {
-        Some(Ok(TimeOfContact::Contact(contact))) => contact.start,
-        Some(Ok(TimeOfContact::Separated)) => StartState::Apart,
-        _ => StartState::Undecided,
     }
 }
 
@@ -89,13 +79,14 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
     })?;
     bar.finish_and_clear();
     let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    let let_go = pool.install(|| let_go(&scene, &names, &rows));
     let proof = if arguments.verify { Some(prove(&scene, &rows)?) } else { None };
     print_answer(&if arguments.json {
-        let text = json(scene.window, &names, &rows);
+        let text = json(scene.window, &names, &rows, &let_go);
         proof.map_or(Ok(text.clone()), |proof| proof.put_into(&text))?
     } else {
         let proof = proof.map_or(String::new(), |proof| format!("  verified: {}\n", proof.sentence()));
-        text(scene.window, &names, &rows) + &proof + &sizes_line_of(&scene)
+        text(scene.window, &names, &rows, &let_go) + &proof + &sizes_line_of(&scene)
     })?;
     let outcome = if rows.iter().any(|row| row.answer.contact().is_some()) {
         Outcome::Contact
@@ -107,14 +98,27 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
     Ok(outcome.reported(arguments.exit_status))
 }
 
-/// Proves the first contact of all again: each pair that is not in the answer is apart until the first one.
+/// The pairs that were let go and are not in the answer.
+fn let_go(scene: &Scene, names: &[&str], rows: &[Row]) -> Vec<LetGo> {
+    if !scene.lets_go() {
+        return Vec::new();
+    }
+    let is_listed = |[a, b]: [usize; 2]| rows.iter().any(|row| row.bodies == [a, b] || row.bodies == [b, a]);
+    let of = |pair: [usize; 2]| {
+        let options = scene.pair_options(pair, QueryOptions::default());
+        let moving = pair.map(|body| scene.bodies[body].moving());
+        LetGo::of(pair.map(|body| names[body]), moving, scene.window, &options)
+    };
+    scene.pairs().into_par_iter().filter(|&pair| !is_listed(pair)).filter_map(of).collect()
+}
+
+/// Proves the first contact of all again: each pair that is not in the answer is apart until the first one, also where that is at the end of the
+/// window. Of several at the start the search does not find all.
 fn prove(scene: &Scene, rows: &[Row]) -> Result<Proof, Failure> {
     let bodies = Bodies::new(scene.bodies.iter().map(SceneBody::moving).collect())?;
     let first = match rows.first().map(|row| &row.answer) {
-        Some(TimeOfContact::Contact(contact)) if contact.time_lo < scene.window.end() => {
-            TimeOfContact::Undecided { clear_until: contact.time_lo }
-        }
-        None | Some(TimeOfContact::Separated | TimeOfContact::Contact(_)) => TimeOfContact::Separated,
+        Some(TimeOfContact::Contact(contact)) => TimeOfContact::Undecided { clear_until: contact.time_lo },
+        None | Some(TimeOfContact::Separated) => TimeOfContact::Separated,
         Some(undecided) => *undecided,
     };
     let mut proofs = Vec::new();
@@ -129,7 +133,7 @@ fn prove(scene: &Scene, rows: &[Row]) -> Result<Proof, Failure> {
 }
 
 /// The answer for a program.
-fn json(window: Window, names: &[&str], rows: &[Row]) -> String {
+fn json(window: Window, names: &[&str], rows: &[Row], let_go: &[LetGo]) -> String {
     let contacts: Vec<Value> = rows
         .iter()
         .map(|row| {
@@ -155,7 +159,11 @@ fn json(window: Window, names: &[&str], rows: &[Row]) -> String {
             }
         })
         .collect();
-    format!("{}\n", json!({ "window": [window.start(), window.end()], "contacts": contacts }))
+    let mut answer = json!({ "window": [window.start(), window.end()], "contacts": contacts });
+    if !let_go.is_empty() {
+        answer["left"] = let_go.iter().map(LetGo::json).collect();
+    }
+    format!("{answer}\n")
 }
 
 /// A contact with how the bodies stood at the start and, where that was let go, when they had parted.
@@ -174,10 +182,10 @@ fn pairs(count: usize) -> String {
 }
 
 /// The answer for a person.
-fn text(window: Window, names: &[&str], rows: &[Row]) -> String {
+fn text(window: Window, names: &[&str], rows: &[Row], let_go: &[LetGo]) -> String {
     let [start, end] = [window.start(), window.end()].map(short);
     let contacts = rows.iter().filter(|row| row.answer.contact().is_some()).count();
-    let bodies = format!("{} bodies from {start} to {end}\n", names.len());
+    let bodies = format!("{} bodies from {start} to {end}{}\n", names.len(), exception(let_go));
     let mut text = match (contacts, rows.len() - contacts) {
         (0, 0) => format!("SEPARATED: certified, no contact of {bodies}"),
         (_, 0) => format!("CONTACT of {} of {bodies}", pairs(contacts)),
@@ -208,6 +216,9 @@ fn text(window: Window, names: &[&str], rows: &[Row]) -> String {
             TimeOfContact::Separated => Ok(()),
         };
     }
+    for pair in let_go {
+        let _ = writeln!(text, "  left: {}", pair.words());
+    }
     text
 }
 
@@ -227,16 +238,37 @@ fn departure_words(row: &Row, contact: &Contact) -> String {
 mod tests {
     use super::*;
 
-    /// Out of the other one and into it again, of which the answer says nothing: it was proven that they part.
-    #[test]
-    fn what_meets_again_is_not_passed_over() {
-        let path = std::env::temp_dir().join(format!("d2m-meets-again-{}.json", std::process::id()));
-        let text = r#"{"start": "leave", "bodies": [{"name": "a", "mesh": "shape:box"}, {"name": "b", "mesh": "shape:box", "motion":
-            {"times": [0, 0.5, 1], "poses": [{"x": [0.5, 0, 0]}, {"x": [3, 0, 0]}, {"x": [0.5, 0, 0]}], "join": "linear"}}]}"#;
+    fn scene(name: &str, text: &str) -> Scene {
+        let path = std::env::temp_dir().join(format!("d2m-{name}-{}.json", std::process::id()));
         std::fs::write(&path, text).unwrap();
         let scene = Scene::read(&path);
         std::fs::remove_file(&path).unwrap();
-        let scene = scene.unwrap_or_else(|_| panic!("the scene is read"));
+        scene.unwrap_or_else(|_| panic!("the scene is read"))
+    }
+
+    /// Three boxes in each other at the only time of a window: the first pair is the answer, and nothing is said of the others.
+    #[test]
+    fn the_first_of_several_at_the_start_is_proven() {
+        let body = |name: &str, x: f64| {
+            format!(r#"{{"name": "{name}", "mesh": "shape:box", "motion": {{"x": [{x}, 0, 0]}}}}"#)
+        };
+        let bodies = [body("a", 0.0), body("b", 0.1), body("c", 0.2)].join(", ");
+        for end in [0, 1] {
+            let scene =
+                scene(&format!("start-{end}"), &format!(r#"{{"window": [0, {end}], "bodies": [{bodies}]}}"#));
+            let found = scene.world(QueryOptions::default()).first_contact(scene.window).unwrap();
+            let FirstContact::Contact { a, b, contact, .. } = found else { panic!("they meet") };
+            let row = Row::new(&scene, [a, b], TimeOfContact::Contact(contact));
+            assert!(prove(&scene, &[row]).unwrap().is_verified(), "{end}");
+        }
+    }
+
+    /// Out of the other one and into it again, of which the answer says nothing: it was proven that they part.
+    #[test]
+    fn what_meets_again_is_not_passed_over() {
+        let text = r#"{"start": "leave", "bodies": [{"name": "a", "mesh": "shape:box"}, {"name": "b", "mesh": "shape:box", "motion":
+            {"times": [0, 0.5, 1], "poses": [{"x": [0.5, 0, 0]}, {"x": [3, 0, 0]}, {"x": [0.5, 0, 0]}], "join": "linear"}}]}"#;
+        let scene = scene("meets-again", text);
         let found = scene.world(QueryOptions::default()).contacts(scene.window).unwrap();
         let rows: Vec<Row> =
             found.iter().map(|pair| Row::new(&scene, [pair.a, pair.b], pair.answer)).collect();

@@ -41,16 +41,19 @@ impl<'a> Names<'a> {
                 return Err(Failure::at(place, format!("{name:?} is the name of no body and of no group")));
             }
         }
-        Ok(self.pair(a, b))
+        self.pair(place, a, b)
     }
 
-    /// What two names of the scene stand for.
-    pub(crate) fn pair(&self, a: &str, b: &str) -> Ignored {
-        match (self.bodies.get(a), self.bodies.get(b)) {
+    /// What two names of the scene stand for; one body twice is no pair.
+    pub(crate) fn pair(&self, place: &str, a: &str, b: &str) -> Result<Ignored, Failure> {
+        Ok(match (self.bodies.get(a), self.bodies.get(b)) {
+            (Some(a_body), Some(b_body)) if a_body == b_body => {
+                return Err(Failure::at(place, format!("{a:?} twice is one body, and no pair")));
+            }
             (Some(&a), Some(&b)) => Ignored::Pair(a, b),
             (Some(&body), None) => Ignored::BodyAndGroup(body, b.to_owned()),
             (None, Some(&body)) => Ignored::BodyAndGroup(body, a.to_owned()),
             (None, None) => Ignored::Groups(a.to_owned(), b.to_owned()),
-        }
+        })
     }
 }

@@ -48,7 +48,11 @@ impl Scene {
             bodies.push(body);
         }
         let names = Names::new(&bodies);
-        let ignored = ignore.iter().map(|[a, b]| names.pair(a, b)).collect();
+        let ignored = ignore
+            .iter()
+            .enumerate()
+            .map(|(index, [a, b])| names.pair(&format!("{place}, ignore {index}"), a, b))
+            .collect::<Result<_, _>>()?;
         let numbers: BTreeMap<&str, usize> =
             bodies.iter().enumerate().map(|(index, body)| (body.name.as_str(), index)).collect();
         let numbered = pairs.into_iter().filter_map(|pair| {
@@ -97,6 +101,11 @@ impl Scene {
         let count = self.bodies.len();
         let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
         pairs.filter(|&pair| !is_ignored(pair)).collect()
+    }
+
+    /// Is a contact at the start let go, of some pair?
+    pub(crate) fn lets_go(&self) -> bool {
+        self.start == Start::Leave || self.pairs.values().any(|pair| pair.start == Some(Start::Leave))
     }
 
     /// The options of its queries.

@@ -101,7 +101,8 @@ impl PairContact {
 #[derive(Clone, Debug, PartialEq)]
 #[must_use = "it is a certificate: what is not read is not known to be safe"]
 pub enum FirstContact {
-    /// Certified: no two bodies meet anywhere in the window.
+    /// Certified: no two bodies meet anywhere in the window. With [`Start::Leave`](d2m_bvh::Start::Leave) that holds of pairs in contact at the start from
+    /// the time on at which they are proven to have parted, here and below.
     Separated,
     /// Certified: no two bodies meet before `contact.time_lo`, and these two do by `contact.time_hi`.
     #[non_exhaustive]
