@@ -72,7 +72,8 @@ fn links(text: &str) -> impl Iterator<Item = &str> {
 fn sources(text: &str) -> impl Iterator<Item = &str> {
     let named = text.split('`').filter_map(|code| code.split("::").next());
     named.filter(|path| {
-        path.starts_with("crates/") && path.ends_with(".rs") && !path.contains(['*', '<', '{', ' '])
+        let is_source = Path::new(path).extension().is_some_and(|extension| extension == "rs");
+        is_source && path.starts_with("crates/") && !path.contains(['*', '<', '{', ' '])
     })
 }
 
