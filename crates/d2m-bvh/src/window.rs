@@ -47,6 +47,17 @@ impl Window {
         self.end - self.start
     }
 
+    /// The resolution of spans and of partings where none is given: a millionth of the window's length, so zero for a single time.
+    ///
+    /// ```
+    /// use d2m_bvh::Window;
+    /// let window = Window::try_new(2.0, 4.0).unwrap();
+    /// assert_eq!(window.default_resolution(), 2e-6);
+    /// ```
+    pub const fn default_resolution(self) -> f64 {
+        1e-6 * self.length()
+    }
+
     /// Is `time` inside, ends included?
     pub fn contains(self, time: f64) -> bool {
         self.start <= time && time <= self.end

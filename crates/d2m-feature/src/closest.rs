@@ -38,13 +38,13 @@ fn orthogonal(v: DVec3, edge: DVec3) -> DVec3 {
 /// of one to rounding.
 ///
 /// ```
-/// use d2m_feature::closest_weights;
+/// use d2m_feature::estimate_closest_weights;
 /// use glam::{DVec3, dvec3};
 /// let triangle = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Y * 4.0];
-/// assert_eq!(closest_weights(dvec3(1.0, 1.0, 3.0), &triangle), [0.5, 0.25, 0.25]);
-/// assert_eq!(closest_weights(dvec3(5.0, -1.0, 0.0), &triangle), [0.0, 1.0, 0.0]);
+/// assert_eq!(estimate_closest_weights(dvec3(1.0, 1.0, 3.0), &triangle), [0.5, 0.25, 0.25]);
+/// assert_eq!(estimate_closest_weights(dvec3(5.0, -1.0, 0.0), &triangle), [0.0, 1.0, 0.0]);
 /// ```
-pub fn closest_weights(point: DVec3, triangle: &[DVec3; 3]) -> [f64; 3] {
+pub fn estimate_closest_weights(point: DVec3, triangle: &[DVec3; 3]) -> [f64; 3] {
     let [a, b, c] = *triangle;
     point_triangle(point, triangle, (b - a).cross(c - a)).b
 }
@@ -52,14 +52,14 @@ pub fn closest_weights(point: DVec3, triangle: &[DVec3; 3]) -> [f64; 3] {
 /// The point of a triangle closest to another one: of the triangle to rounding, the closest of it by a guess, which proves nothing.
 ///
 /// ```
-/// use d2m_feature::closest_point;
+/// use d2m_feature::estimate_closest_point;
 /// use glam::{DVec3, dvec3};
 /// let triangle = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Y * 4.0];
-/// assert_eq!(closest_point(dvec3(1.0, 1.0, 3.0), &triangle), dvec3(1.0, 1.0, 0.0));
+/// assert_eq!(estimate_closest_point(dvec3(1.0, 1.0, 3.0), &triangle), dvec3(1.0, 1.0, 0.0));
 /// ```
-pub fn closest_point(point: DVec3, triangle: &[DVec3; 3]) -> DVec3 {
+pub fn estimate_closest_point(point: DVec3, triangle: &[DVec3; 3]) -> DVec3 {
     let [a, b, c] = *triangle;
-    let weights = closest_weights(point, triangle);
+    let weights = estimate_closest_weights(point, triangle);
     a + (b - a) * weights[1] + (c - a) * weights[2]
 }
 

@@ -23,7 +23,7 @@
 //!
 //! ## At rest
 //! - [`triangle_distance()`]: a [`TriangleDistance`] with its witnesses, each on a [`TriangleFeature`].
-//! - [`closest_point`], [`closest_weights`]: the point of a triangle closest to another one, to rounding.
+//! - [`estimate_closest_point`], [`estimate_closest_weights`]: the point of a triangle closest to another one, to rounding.
 //! - [`proven_crossing`]: of triangles whose vertices are known up to an error.
 //! - [`triangles_intersect`], [`orient2d`], [`orient3d`], [`triple_product_sign`]: exact.
 //!
@@ -60,7 +60,7 @@ mod triangles_at;
 mod twist_pair;
 mod units;
 
-pub use closest::{closest_point, closest_weights};
+pub use closest::{estimate_closest_point, estimate_closest_weights};
 pub use contact::{ContactBracket, ContactDetails, FirstContact};
 pub use exact_sign::{orient2d, orient3d, triple_product_sign};
 pub use feature_pair::FeaturePair;

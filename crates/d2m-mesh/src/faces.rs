@@ -1,7 +1,7 @@
 //! Which triangles meet at a vertex, and how far flat parts of the surface go on around a point.
 
 use crate::{Simplex, TriMesh};
-use d2m_feature::closest_point;
+use d2m_feature::estimate_closest_point;
 use glam::DVec3;
 
 /// The triangles at each vertex of a mesh, and their normals: what contacts ask of a surface around closest points. All in the mesh's frame; normals and
@@ -130,8 +130,9 @@ impl Faces {
             let outline = flat.iter().flat_map(|&t| sides(t)).filter(has_outside);
             let room =
                 outline.map(|[from, to]| to_segment(point, [at(from), at(to)])).fold(f64::INFINITY, f64::min);
-            let is_on =
-                |&t: &u32| closest_point(point, &mesh.corners(t as usize)).distance(point) <= rounding;
+            let is_on = |&t: &u32| {
+                estimate_closest_point(point, &mesh.corners(t as usize)).distance(point) <= rounding
+            };
             flat.iter().any(is_on).then_some(0.5 * room)
         };
         [1.0, -1.0].into_iter().filter_map(facing).reduce(f64::max)
@@ -165,7 +166,7 @@ impl Faces {
             (normal - direction).length().min((normal + direction).length())
         };
         let flat = self.around(vertices).into_iter().filter(|&t| off(t) <= most);
-        let feet = flat.map(|t| (t, closest_point(point, &mesh.corners(t as usize))));
+        let feet = flat.map(|t| (t, estimate_closest_point(point, &mesh.corners(t as usize))));
         let away = |foot: DVec3| foot.distance_squared(point);
         feet.min_by(|(_, x), (_, y)| away(*x).total_cmp(&away(*y)))
     }

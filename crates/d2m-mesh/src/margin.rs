@@ -18,6 +18,13 @@ pub const DOWN: f64 = 1.0 - 1.0 / 1_099_511_627_776.0;
 /// Factor that covers sixteen roundings to `f32`.
 pub const NARROW_UP: f64 = 1.0 + 16.0 * UNIT_F32;
 
+/// Two radii: not more and not less than their sum, which is exact where one of them is zero.
+#[inline]
+pub fn sum_of_radii([a, b]: [f64; 2]) -> [f64; 2] {
+    let sum = a + b;
+    if a == 0.0 || b == 0.0 { [sum; 2] } else { [sum.next_down(), sum.next_up()] }
+}
+
 /// The least `f32` that is not below `value`.
 #[inline]
 pub fn round_up(value: f64) -> f32 {

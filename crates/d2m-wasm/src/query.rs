@@ -76,9 +76,6 @@ impl<'s> Pair<'s> {
     }
 }
 
-/// The resolution of spans as a part of the window, as the command has it.
-const RESOLUTION: f64 = 1e-6;
-
 /// As `d2m toc --json` answers, with the words of `d2m view`.
 pub(crate) fn time_of_contact(bodies: [Given<'_>; 2], options: &str) -> Result<Value, String> {
     let options = Options::parse(options)?;
@@ -144,7 +141,7 @@ pub(crate) fn contact_spans(bodies: [Given<'_>; 2], options: &str) -> Result<Val
     options.refuse("contactSpans", &["clearance", "accuracy", "start"])?;
     let pair = Pair::new(bodies, &options)?;
     let [a, b] = pair.moving();
-    let resolution = options.resolution.unwrap_or(RESOLUTION * pair.window.length());
+    let resolution = options.resolution.unwrap_or(pair.window.default_resolution());
     let (found, microseconds) =
         timed(|| bvh::contact_spans(a, b, pair.window, &options.query(), Some(resolution)));
     let spans = found.map_err(|error| query_fault(&error, pair.motions(), pair.window))?;

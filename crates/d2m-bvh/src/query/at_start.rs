@@ -1,7 +1,6 @@
 //! How bodies that are in contact at the start of a window meet there: do they touch, or do they overlap?
 
 use super::report::triangles_of_held;
-use super::rounded::Rounded;
 use crate::moving::triangles_of;
 use crate::{
     Answered, Contact, Evidence, Meter, Moving, Posed, QueryError, QueryOptions, Solid, StartState,
@@ -10,7 +9,7 @@ use crate::{
 use d2m_feature::{FeaturePair, TriangleDistance, TriangleFeature, TrianglesAt};
 use d2m_lanes::UP;
 use d2m_mesh::at_rest::{Meeters, Meeting, bound_distance_metered};
-use d2m_mesh::margin::length;
+use d2m_mesh::margin::{length, sum_of_radii};
 use d2m_motion::Pose;
 use glam::{DMat3, DVec3};
 
@@ -94,7 +93,7 @@ fn nearest_of_rounded(
     bodies: &[Moving<'_>; 2],
     meter: &mut Meter,
 ) -> Result<Contact, QueryError> {
-    let [least, most] = Rounded { radii: bodies.map(|body| body.radius) }.sums();
+    let [least, most] = sum_of_radii(bodies.map(|body| body.radius));
     if most == 0.0 {
         return Ok(contact);
     }

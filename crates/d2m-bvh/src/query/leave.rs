@@ -13,8 +13,6 @@ use crate::{
 };
 use d2m_lanes::power_of_two;
 
-/// Part of a window that bodies are watched at while they stay in contact, where no longer span is proven.
-const RESOLUTION: f64 = 1e-6;
 /// The first step away from bodies that were just proven apart, as a part of that.
 const LEAST_STEP: f64 = power_of_two(-30);
 
@@ -121,7 +119,8 @@ pub(super) fn of_departing(
         TimeOfContact::Contact(contact) => contact,
     };
     let tolerance = tolerance_of(&bodies, options).max(first.tolerance);
-    let resolution = RESOLUTION * window.length();
+    // While the bodies stay in contact, they are watched at this where no longer span is proven.
+    let resolution = window.default_resolution();
     let mut walk = Walk::new([a, b], window, options, tolerance, resolution);
     let (left, answer) = parting(&mut walk, &first)?;
     let spent = SearchCounts { node_tests: walk.meter.spent(), ..SearchCounts::default() };

@@ -6,6 +6,7 @@
 
 use crate::{Contact, MeshTree, Moving, QueryError, QueryOptions, StartState, TimeOfContact};
 use d2m_lanes::UP;
+use d2m_mesh::margin::sum_of_radii;
 
 /// The radii of two bodies.
 #[derive(Clone, Copy, Debug)]
@@ -26,13 +27,7 @@ impl Rounded {
 
     /// Both radii, not less than their sum.
     pub(super) fn sum(&self) -> f64 {
-        self.sums()[1]
-    }
-
-    /// Both radii: not more and not less than their sum.
-    pub(super) fn sums(&self) -> [f64; 2] {
-        let [a, b] = self.radii;
-        if a == 0.0 || b == 0.0 { [a + b; 2] } else { [(a + b).next_down(), (a + b).next_up()] }
+        sum_of_radii(self.radii)[1]
     }
 
     fn are_none(&self) -> bool {
@@ -82,7 +77,7 @@ impl Rounded {
     pub(super) fn start(&self, contact: &Contact) -> StartState {
         match contact.start {
             start @ (StartState::Apart | StartState::Contained) => start,
-            _ if contact.separation < self.sums()[0] => StartState::Overlapping,
+            _ if contact.separation < sum_of_radii(self.radii)[0] => StartState::Overlapping,
             start => start,
         }
     }

@@ -13,9 +13,6 @@ use d2m_lanes::power_of_two;
 #[cfg(feature = "audit")]
 use d2m_mesh::audit::Place;
 
-/// The resolution as a part of the window, if none is given.
-const RESOLUTION: f64 = 1e-6;
-
 /// What is known of a span of time.
 ///
 /// ```
@@ -149,7 +146,7 @@ pub fn contact_spans(
     let mut options = rounded.options([a.body, b.body], options)?;
     options.mode = Mode::Accurate;
     let tolerance = tolerance_of(&[a, b], &options);
-    let resolution = resolution.unwrap_or(RESOLUTION * window.length());
+    let resolution = resolution.unwrap_or(window.default_resolution());
     let walk = Walk::new([a, b], window, &options, tolerance, resolution);
     let mut search =
         Search { walk, wanted: tolerance, tolerance, spans: Vec::new(), now: window.start(), within: None };

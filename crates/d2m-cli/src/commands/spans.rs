@@ -16,9 +16,6 @@ use d2m::{BodyId, PairSpans, join_spans};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// The resolution as a part of the window, if none is given; zero of a single time.
-const RESOLUTION: f64 = 1e-6;
-
 /// Runs the command.
 pub(crate) fn run(arguments: &SpansArguments) -> Result<Outcome, Failure> {
     let asked = &arguments.pair;
@@ -30,7 +27,7 @@ pub(crate) fn run(arguments: &SpansArguments) -> Result<Outcome, Failure> {
     }
     let MovingPair { pair, motion_a, motion_b, window, travels } = read(asked)?;
     let spans = pair.spans([&motion_a, &motion_b], window, resolution)?;
-    let resolution = resolution.unwrap_or(RESOLUTION * window.length());
+    let resolution = resolution.unwrap_or(window.default_resolution());
     let ends = [window.start(), window.end()];
     let (text, json) = (to_text(&spans), spans.iter().map(to_json).collect::<Vec<Value>>());
     let promise = Promise::Spans { spans: spans.clone(), resolution };
@@ -58,7 +55,7 @@ fn run_scene(asked: &PairArguments, resolution: Option<f64>) -> Result<Outcome, 
     let SceneQuestion { scene, world, options } = SceneQuestion::read(asked)?;
     let pairs = world.contact_spans(scene.window, resolution);
     let pairs = pairs.map_err(|error| Failure::at(&asked.a, scene.describe(error)))?;
-    let resolution = resolution.unwrap_or(RESOLUTION * scene.window.length());
+    let resolution = resolution.unwrap_or(scene.window.default_resolution());
     let all = join_spans(scene.window, &pairs);
     let name = |id: BodyId| scene.bodies[id.index()].name.as_str();
     let list = |spans: &[ContactSpan]| spans.iter().map(to_json).collect::<Vec<Value>>();

@@ -3,7 +3,7 @@
 use crate::body::rigid_body::RigidBody;
 use crate::contact::{ASKEW, CROSSING, ContactPoint, LEVER, ROUNDED};
 use crate::pairs::closest_features::vertices_of;
-use d2m_feature::{FeaturePair, closest_point};
+use d2m_feature::{FeaturePair, estimate_closest_point};
 use glam::DVec3;
 
 /// The part of the way to the corners and the middle of a triangle by which points beside a closest one are off it, 2⁻⁸: where that way is as long
@@ -55,7 +55,8 @@ fn beside(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) -> Vec<Sli
     for (k, other) in [(0, 1), (1, 0)] {
         for triangle in bodies[other].faces.around(&features[other]) {
             let corners = meshes[other].corners(triangle as usize);
-            let nearest = closest_point(poses[other].inverse_transform_point(contact.point), &corners);
+            let nearest =
+                estimate_closest_point(poses[other].inverse_transform_point(contact.point), &corners);
             let [a, b, c] = corners;
             let points = [a, b, c, (a + b + c) / 3.0].map(|to| nearest + (to - nearest) * BESIDE);
             found.extend(points.iter().filter_map(|&p| over(poses[other].transform_point(p), k)));

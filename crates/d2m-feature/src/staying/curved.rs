@@ -6,7 +6,7 @@
 //! longer than the longest of its Bernstein coefficients. docs/theory/questions.md, "Staying in contact".
 
 use super::Middle;
-use crate::{TriangleDistance, closest_weights, triangle_distance};
+use crate::{TriangleDistance, estimate_closest_weights, triangle_distance};
 use d2m_lanes::{UP, power_of_two};
 use d2m_motion::{CertifiedState, RelativeState, length};
 use glam::DVec3;
@@ -130,8 +130,9 @@ fn weights_of(near: &TriangleDistance) -> [[f64; 3]; 2] {
 
 /// The point with these weights goes with triangle `k`; the closest one of the other triangle follows it.
 fn following(placed: &[[[DVec3; 3]; 2]; 3], k: usize, weights: [f64; 3]) -> Way {
-    let follows =
-        placed.map(|triangles| convex(closest_weights(weighted(&triangles[k], weights), &triangles[1 - k])));
+    let follows = placed.map(|triangles| {
+        convex(estimate_closest_weights(weighted(&triangles[k], weights), &triangles[1 - k]))
+    });
     if k == 0 { [[weights; 3], follows] } else { [follows, [weights; 3]] }
 }
 

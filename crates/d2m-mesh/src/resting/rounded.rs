@@ -1,11 +1,7 @@
 //! Distances and closest features of bodies with radii, from those of their meshes.
 
+use crate::margin::sum_of_radii;
 use crate::{Distance, Proximity, StartState};
-
-/// Both radii: not more and not less than their sum.
-fn sum([a, b]: [f64; 2]) -> [f64; 2] {
-    if a == 0.0 || b == 0.0 { [a + b; 2] } else { [(a + b).next_down(), (a + b).next_up()] }
-}
 
 impl Distance {
     /// The distance of the bodies that are everything within these radii, finite and not negative, of the meshes (and of what solid ones
@@ -26,7 +22,7 @@ impl Distance {
     /// ```
     #[must_use]
     pub fn with_radii(mut self, radii: [f64; 2]) -> Self {
-        let [least, most] = sum(radii);
+        let [least, most] = sum_of_radii(radii);
         if most == 0.0 || self.state == StartState::Contained {
             return self;
         }

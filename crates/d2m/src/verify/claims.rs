@@ -9,8 +9,6 @@ use d2m_bvh::{ClearanceStatus, Evidence, TimeBracket};
 
 /// The separation that may be left above s, in tolerances.
 pub(super) const MOST_LEFT: f64 = 3.3;
-/// The resolution of spans as a part of the window, if none is given, and that at which bodies that stay in contact are watched.
-pub(super) const RESOLUTION: f64 = 1e-6;
 /// The width of a clearance in tolerances, where that is more than its accuracy.
 const WIDTH: f64 = 4.0;
 
@@ -206,7 +204,7 @@ pub fn spans_claim(
     resolution: Option<f64>,
     answer: &[ContactSpan],
 ) -> Result<Claim, Reason> {
-    let resolution = resolution.unwrap_or(RESOLUTION * window.length());
+    let resolution = resolution.unwrap_or(window.default_resolution());
     let covers = answer.first().is_some_and(|span| span.from == window.start())
         && answer.last().is_some_and(|span| span.to == window.end())
         && answer.windows(2).all(|pair| pair[0].to == pair[1].from && pair[0].from < pair[0].to)

@@ -1,6 +1,6 @@
 //! Bodies that are in contact at the start, which counts no more once they have parted: what answers claim of them.
 
-use super::claims::{MOST_LEFT, RESOLUTION, at, contact_claim};
+use super::claims::{MOST_LEFT, at, contact_claim};
 use super::rounding::{Scale, resolvable};
 use super::{Claim, Reason, TimeSpan};
 use crate::{
@@ -34,7 +34,7 @@ pub fn departure_claim(
         distance: options.min_separation + tolerances * scale.most,
         triangles: None,
     };
-    let every = resolvable(window, RESOLUTION * window.length());
+    let every = resolvable(window, window.default_resolution());
     let stay_until = |to: f64| Claim::Often {
         span: TimeSpan { from: window.start(), to },
         distance: options.min_separation + NOT_LEFT * scale.most,

@@ -5,8 +5,6 @@ use crate::{Contact, Moving, Pose, QueryOptions, Twist, Window};
 use d2m_motion::{CertifiedState, length};
 use glam::DMat3;
 
-/// δ if none is given, as a part of the larger body.
-const DEFAULT_TOLERANCE: f64 = 1e-10;
 /// The error γ of a distance of placed triangles, as a part of the lengths of the scene: 2⁻⁴⁴, four times the 128 units of 2⁻⁵³ that the
 /// documentation of [`Contact::tolerance`] names (δ is at least 2γ), for lengths that are summed here in another order.
 const ERROR: f64 = 1.0 / 17_592_186_044_416.0;
@@ -61,7 +59,7 @@ impl Scale {
         let lengths = reaches[0] + reaches[1] + apart(&states[0]).max(apart(&states[1])) + travel;
         let lengths = lengths + options.min_separation;
         let clock = 8.0 * speed(&states[1]) * (time.next_up() - time).max(time - time.next_down());
-        let asked = options.tolerance.unwrap_or(DEFAULT_TOLERANCE * sizes[0].max(sizes[1]));
+        let asked = options.tolerance_of(sizes[0].max(sizes[1]));
         // Distances of bodies with radii are those of their meshes less both.
         let radii = 8.0 * f64::EPSILON * (bodies[0].radius + bodies[1].radius);
         let near = reaches[0] + reaches[1] + apart(&states[1]);

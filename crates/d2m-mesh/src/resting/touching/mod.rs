@@ -17,8 +17,6 @@ mod axis;
 mod exact;
 pub(crate) mod inside;
 mod parting;
-#[cfg(test)]
-mod tests;
 
 use super::collide::{near_pairs, proven_crossing_pair, surfaces_are_apart};
 use super::containment::{Held, held_by, one_holds_the_other};
