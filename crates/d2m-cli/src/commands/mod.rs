@@ -7,7 +7,6 @@ pub(crate) mod demo;
 pub(crate) mod distance;
 pub(crate) mod features;
 pub(crate) mod info;
-mod let_go;
 pub(crate) mod manual;
 pub(crate) mod proximities;
 pub(crate) mod robot;

@@ -1,10 +1,10 @@
 //! `d2m robot`: is a planned path of a robot free of contact?
 
-use super::let_go::{LetGo, at_start, exception};
 use super::robot_proof::{Proof, prove};
 use crate::arguments::RobotArguments;
 use crate::engine::{number, threads, time_limit};
 use crate::failure::Failure;
+use crate::let_go::{Beginning, LetGo, at_start, exception};
 use crate::load::named;
 use crate::outcome::Outcome;
 use crate::output::{Output, digits, note, print, short};
@@ -105,24 +105,20 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
         None
     };
     let bodies = scene.bodies_along(&path).map_err(fault)?;
-    let let_go = pool.install(|| let_go(&bodies, &answer));
+    let beginnings = pool.install(|| beginnings(&bodies, &answer));
+    let let_go: Vec<&LetGo> = beginnings.iter().filter_map(Beginning::let_go).collect();
     let start = answer.contact().map(|found| {
         at_start(found.bodies.map(|body| bodies.moving(body)), window, &bodies.pair_options(found.bodies))
     });
-    let proof = if arguments.verify {
-        Some(prove(&scene.bodies_along(&path).map_err(fault)?, &answer)?)
-    } else {
-        None
-    };
+    let proof = if arguments.verify { Some(prove(&bodies, &answer)?) } else { None };
     if let Some(page) = page {
-        let bodies = scene.bodies_along(&path).map_err(fault)?;
-        page.write(&picture_of_path(&bodies, window, &answer).to_html())?;
+        page.write(&picture_of_path(&bodies, &answer, &beginnings).to_html())?;
     }
     print(&if arguments.json {
-        let further = Further { checked, clearance, proof, let_go, start };
+        let further = Further { checked, clearance, proof, let_go: &let_go, start };
         json(&answer, window, &warnings, &further)
     } else {
-        text(&answer, window, options.min_separation, &let_go)
+        text(&answer, &bodies, &let_go)
             + &format!("  checked     {} pairs of {} bodies\n", checked.pairs, checked.bodies)
             + &clearance.as_ref().map_or(String::new(), nearness)
             + &proof.as_ref().map_or(String::new(), |proof| match proof {
@@ -198,25 +194,43 @@ struct Checked {
 }
 
 /// What is said beside the answer.
-struct Further {
+struct Further<'a> {
     checked: Checked,
     clearance: Option<PathClearance>,
     proof: Option<Proof>,
-    let_go: Vec<LetGo>,
+    let_go: &'a [&'a LetGo],
     /// How the bodies of the contact stood at the start of the path.
     start: Option<StartState>,
 }
 
-/// The pairs whose contact at the start was let go and that are not the answer.
-fn let_go(bodies: &PathBodies<'_>, answer: &PathAnswer) -> Vec<LetGo> {
+/// From when on the answer counts, of all pairs that are checked.
+fn beginnings(bodies: &PathBodies<'_>, answer: &PathAnswer) -> Vec<Beginning> {
     let of = |&pair: &[usize; 2]| {
+        // They never part: that is the answer.
         if answer.contact().is_some_and(|found| found.bodies == pair && found.contact.left.is_none()) {
-            return None;
+            return Beginning::Start;
         }
         let moving = pair.map(|body| bodies.moving(body));
-        LetGo::of(pair.map(|body| bodies.name(body)), moving, bodies.window(), &bodies.pair_options(pair))
+        let names = pair.map(|body| bodies.name(body));
+        Beginning::of(names, moving, bodies.window(), &bodies.pair_options(pair))
     };
-    bodies.pairs().par_iter().filter_map(of).collect()
+    bodies.pairs().par_iter().map(of).collect()
+}
+
+/// What is proven of all pairs at the times that are certified.
+fn kept(bodies: &PathBodies<'_>, let_go: &[&LetGo]) -> String {
+    let distances = bodies.pairs().iter().map(|&pair| bodies.pair_options(pair).min_separation);
+    let (least, most) =
+        distances.fold((f64::INFINITY, 0.0_f64), |(least, most), d| (least.min(d), most.max(d)));
+    let kept = if most == 0.0 {
+        String::new()
+    } else if least == most {
+        format!(", all pairs further apart than {}", short(most))
+    } else {
+        let [least, most] = [least, most].map(short);
+        format!(", each pair further apart than its own minimum separation (from {least} to {most})")
+    };
+    kept + exception(let_go)
 }
 
 /// The answer for a program.
@@ -224,7 +238,7 @@ fn json(
     answer: &PathAnswer,
     window: Window,
     warnings: &[LimitWarning],
-    Further { checked, clearance, proof, let_go, start }: &Further,
+    Further { checked, clearance, proof, let_go, start }: &Further<'_>,
 ) -> String {
     let mut object = json!({
         "status": status(answer),
@@ -263,7 +277,7 @@ fn json(
         put("clearance_time", json!(time));
     }
     if !let_go.is_empty() {
-        put("left", let_go.iter().map(LetGo::json).collect());
+        put("left", let_go.iter().map(|pair| pair.json()).collect());
     }
     if let Some(proof) = proof {
         put("verified", json!(matches!(proof, Proof::Verified(_))));
@@ -290,14 +304,9 @@ const fn status(answer: &PathAnswer) -> &'static str {
 }
 
 /// The answer for a person.
-fn text(answer: &PathAnswer, window: Window, min_separation: f64, let_go: &[LetGo]) -> String {
-    let [start, end] = [window.start(), window.end()].map(short);
-    let kept = if min_separation > 0.0 {
-        format!(", all pairs further apart than {}", short(min_separation))
-    } else {
-        String::new()
-    };
-    let kept = kept + exception(let_go);
+fn text(answer: &PathAnswer, bodies: &PathBodies<'_>, let_go: &[&LetGo]) -> String {
+    let [start, end] = [bodies.window().start(), bodies.window().end()].map(short);
+    let kept = kept(bodies, let_go);
     let mut text = match answer {
         PathAnswer::Free { .. } => format!("FREE: certified, no contact from {start} to {end}{kept}\n"),
         PathAnswer::Undecided { free_until, a, b, .. } => format!(
@@ -311,10 +320,11 @@ fn text(answer: &PathAnswer, window: Window, min_separation: f64, let_go: &[LetG
     };
     if let PathAnswer::Contact(found) = answer {
         let contact = &found.contact;
+        let separation = bodies.pair_options(found.bodies).min_separation;
         // Writing to a string cannot fail.
         let _ = writeln!(text, "  time        [{}, {}]", short(contact.time_lo), short(contact.time_hi));
         let _ = writeln!(text, "  certified   free from {start} until the first of these times{kept}");
-        let _ = writeln!(text, "  evidence    {}", evidence_sentence(contact, min_separation));
+        let _ = writeln!(text, "  evidence    {}", evidence_sentence(contact, separation));
         let _ = writeln!(text, "  separation  {:.4e} left then", contact.separation);
         let _ = writeln!(text, "  point       {} on {}", vector(contact.point_a), found.a);
         let _ = writeln!(text, "  normal      {} from {} to {}", vector(contact.normal), found.a, found.b);

@@ -1,10 +1,10 @@
 //! `d2m scene`: the contacts of many bodies.
 
-use super::let_go::{LetGo, at_start, exception};
 use super::scene_question::sizes_line_of;
 use crate::arguments::SceneArguments;
 use crate::engine::{threads, time_limit};
 use crate::failure::Failure;
+use crate::let_go::{Beginning, LetGo, at_start, exception};
 use crate::load::named;
 use crate::outcome::Outcome;
 use crate::output::{print_answer, progress_bar, short};
@@ -79,7 +79,8 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
     })?;
     bar.finish_and_clear();
     let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
-    let let_go = pool.install(|| let_go(&scene, &names, &rows));
+    let beginnings = pool.install(|| beginnings(&scene, &names, &rows));
+    let let_go: Vec<&LetGo> = beginnings.iter().filter_map(Beginning::let_go).collect();
     let proof = if arguments.verify { Some(prove(&scene, &rows)?) } else { None };
     print_answer(&if arguments.json {
         let text = json(scene.window, &names, &rows, &let_go);
@@ -98,8 +99,8 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
     Ok(outcome.reported(arguments.exit_status))
 }
 
-/// The pairs that were let go and are not in the answer.
-fn let_go(scene: &Scene, names: &[&str], rows: &[Row]) -> Vec<LetGo> {
+/// From when on it counts that pairs are not in the answer.
+fn beginnings(scene: &Scene, names: &[&str], rows: &[Row]) -> Vec<Beginning> {
     if !scene.lets_go() {
         return Vec::new();
     }
@@ -107,9 +108,9 @@ fn let_go(scene: &Scene, names: &[&str], rows: &[Row]) -> Vec<LetGo> {
     let of = |pair: [usize; 2]| {
         let options = scene.pair_options(pair, QueryOptions::default());
         let moving = pair.map(|body| scene.bodies[body].moving());
-        LetGo::of(pair.map(|body| names[body]), moving, scene.window, &options)
+        Beginning::of(pair.map(|body| names[body]), moving, scene.window, &options)
     };
-    scene.pairs().into_par_iter().filter(|&pair| !is_listed(pair)).filter_map(of).collect()
+    scene.pairs().into_par_iter().filter(|&pair| !is_listed(pair)).map(of).collect()
 }
 
 /// Proves the first contact of all again: each pair that is not in the answer is apart until the first one, also where that is at the end of the
@@ -133,7 +134,7 @@ fn prove(scene: &Scene, rows: &[Row]) -> Result<Proof, Failure> {
 }
 
 /// The answer for a program.
-fn json(window: Window, names: &[&str], rows: &[Row], let_go: &[LetGo]) -> String {
+fn json(window: Window, names: &[&str], rows: &[Row], let_go: &[&LetGo]) -> String {
     let contacts: Vec<Value> = rows
         .iter()
         .map(|row| {
@@ -161,7 +162,7 @@ fn json(window: Window, names: &[&str], rows: &[Row], let_go: &[LetGo]) -> Strin
         .collect();
     let mut answer = json!({ "window": [window.start(), window.end()], "contacts": contacts });
     if !let_go.is_empty() {
-        answer["left"] = let_go.iter().map(LetGo::json).collect();
+        answer["left"] = let_go.iter().map(|pair| pair.json()).collect();
     }
     format!("{answer}\n")
 }
@@ -182,7 +183,7 @@ fn pairs(count: usize) -> String {
 }
 
 /// The answer for a person.
-fn text(window: Window, names: &[&str], rows: &[Row], let_go: &[LetGo]) -> String {
+fn text(window: Window, names: &[&str], rows: &[Row], let_go: &[&LetGo]) -> String {
     let [start, end] = [window.start(), window.end()].map(short);
     let contacts = rows.iter().filter(|row| row.answer.contact().is_some()).count();
     let bodies = format!("{} bodies from {start} to {end}{}\n", names.len(), exception(let_go));

@@ -4,6 +4,7 @@ mod base64;
 mod display_mesh;
 mod flight;
 mod mark;
+mod pair_spans;
 mod path;
 mod picture;
 mod rounded;

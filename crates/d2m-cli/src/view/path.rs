@@ -1,21 +1,32 @@
 //! A robot's path as a page shows it.
 
+use super::pair_spans::spans_of_pairs;
 use super::{Flight, Holds, Mark, Picture, Span, Up, flights_of, push_thinned};
+use crate::let_go::{Beginning, LetGo, exception};
 use crate::output::short;
 use d2m::bvh::{MeshTree, Moving, StartState, Window};
 use d2m_robot::{PathAnswer, PathBodies};
 use std::ptr;
 
-/// The bodies of a robot and its scene along a path, and what the answer proves of it.
-pub(crate) fn picture_of_path(bodies: &PathBodies<'_>, window: Window, answer: &PathAnswer) -> Picture {
+/// Lines of text beside the picture: the pairs that were let go.
+const MOST_FACTS: usize = 8;
+
+/// The bodies of a robot and its scene along a path, and what the answer proves of it; `beginnings` are those of its pairs.
+pub(crate) fn picture_of_path(
+    bodies: &PathBodies<'_>,
+    answer: &PathAnswer,
+    beginnings: &[Beginning],
+) -> Picture {
+    let window = bodies.window();
     let [start, end] = [window.start(), window.end()].map(short);
+    let let_go: Vec<&LetGo> = beginnings.iter().filter_map(Beginning::let_go).collect();
     let headline = match answer {
-        PathAnswer::Free { .. } => format!("FREE from t = {start} to {end}"),
+        PathAnswer::Free { .. } => format!("FREE from t = {start} to {end}{}", exception(&let_go)),
         PathAnswer::Contact(found) => {
             format!("CONTACT of {} and {} at t = {}", found.a, found.b, short(found.contact.time_lo))
         }
         PathAnswer::Undecided { free_until, .. } => {
-            format!("UNDECIDED, free until t = {}", short(*free_until))
+            format!("UNDECIDED, free until t = {}{}", short(*free_until), exception(&let_go))
         }
     };
     let mut picture = Picture::new(headline, [window.start(), window.end()]);
@@ -37,22 +48,30 @@ pub(crate) fn picture_of_path(bodies: &PathBodies<'_>, window: Window, answer: &
         };
         picture.add_body(bodies.name(body), number, shown_flights(&moving, window));
     }
-    if let Some(found) = answer.contact() {
-        let contact = &found.contact;
-        picture.add_fact("evidence", contact.evidence.to_string());
-        if contact.start != StartState::Contained {
-            let of = found.bodies.map(|body| bodies.moving(body).body.mesh());
-            picture.marks.push(Mark::of_contact(contact, found.bodies, of));
-            let text = format!("first contact of {} and {}", found.a, found.b);
-            picture.spans.push(Span::new(contact.time_lo, contact.time_hi, Holds::Contact, &text));
+    for pair in let_go.into_iter().take(MOST_FACTS) {
+        picture.add_fact("left", pair.words());
+    }
+    let mut found = Vec::new();
+    match answer {
+        PathAnswer::Free { .. } => {}
+        PathAnswer::Undecided { free_until, a, b, .. } => {
+            let text = format!("{a} and {b} are not decided: the budget ran out");
+            found.push(Span::new(*free_until, window.end(), Holds::Undecided, &text));
+        }
+        PathAnswer::Contact(met) => {
+            let contact = &met.contact;
+            picture.add_fact("evidence", contact.evidence.to_string());
+            if contact.start != StartState::Contained {
+                let of = met.bodies.map(|body| bodies.moving(body).body.mesh());
+                picture.marks.push(Mark::of_contact(contact, met.bodies, of));
+            }
+            let text = format!("first contact of {} and {}", met.a, met.b);
+            found.push(Span::new(contact.time_lo, contact.time_hi, Holds::Contact, &text));
+            let text = "after this the path was not examined";
+            found.push(Span::new(contact.time_lo, window.end(), Holds::Unknown, text));
         }
     }
-    let free_until = answer.free_until();
-    picture.spans.push(Span::new(window.start(), free_until, Holds::Clear, "the path is proven free"));
-    if free_until < window.end() {
-        let text = "after this the path was not examined";
-        picture.spans.push(Span::new(free_until, window.end(), Holds::Unknown, text));
-    }
+    picture.spans = spans_of_pairs(window, beginnings, "the path is proven free", found);
     picture
 }
 
