@@ -9,6 +9,7 @@ mod arguments;
 mod commands;
 mod engine;
 mod failure;
+mod inputs;
 mod let_go;
 mod load;
 mod mesh_library;

@@ -1,6 +1,7 @@
 //! Results to files that are complete or absent, plain or packed by gzip, or to standard output.
 
 use crate::failure::Failure;
+use crate::inputs;
 pub(crate) use d2m_io::short_number as short;
 use flate2::Compression;
 use flate2::write::GzEncoder;
@@ -90,15 +91,21 @@ impl Output {
         Ok(Self::File(target.unwrap_or_else(|| path.to_owned())))
     }
 
-    /// Refuses to replace one of the files that are read.
+    /// Refuses to replace a file that is about to be read, before anything is done.
     pub(crate) fn spare<'a>(self, inputs: impl IntoIterator<Item = &'a Path>) -> Result<Self, Failure> {
-        if let Self::File(path) = &self
-            && let Ok(target) = path.canonicalize()
-            && inputs.into_iter().any(|input| input.canonicalize().is_ok_and(|input| input == target))
-        {
-            return Err(Failure::at(path.display(), "is an input and would be overwritten"));
-        }
+        inputs.into_iter().for_each(inputs::remember);
+        self.spare_inputs()?;
         Ok(self)
+    }
+
+    /// Refuses to replace any file that was read until now. Each result is held against them before it is written; what takes long asks before that.
+    pub(crate) fn spare_inputs(&self) -> Result<(), Failure> {
+        match self {
+            Self::File(path) if inputs::was_read(path) => {
+                Err(Failure::at(path.display(), "is an input and would be overwritten"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Refuses a name that says another kind of file than the one that the option writes: nobody could read it by that name.
@@ -132,6 +139,7 @@ impl Output {
 
     /// Opens the place for results that come bit by bit: what is there already is replaced at once.
     pub(crate) fn stream(&self) -> Result<Stream, Failure> {
+        self.spare_inputs()?;
         let (sink, name) = match self {
             Self::Stdout => (Sink::Stdout, "standard output".to_owned()),
             Self::File(path) => {
@@ -154,6 +162,7 @@ impl Output {
     /// As [`Self::write`], for what is no text.
     pub(crate) fn write_bytes(&self, contents: &[u8]) -> Result<(), Failure> {
         let Self::File(path) = self else { return print_bytes(contents) };
+        self.spare_inputs()?;
         // A device such as /dev/null must not be replaced.
         let special = path.exists() && !path.is_file();
         let written = if special { fs::write(path, contents) } else { replace(path, contents) };

@@ -22,6 +22,7 @@ impl Partial {
             return Err(Failure::at("--resume", "standard output keeps no answers: name a file with --out"));
         };
         let path = PathBuf::from(format!("{}.part", out.display()));
+        Output::File(path.clone()).spare_inputs()?;
         let fault = |error: std::io::Error| Failure::at(path.display(), error);
         let origin = format!("# d2m {} {:016x}\n", env!("CARGO_PKG_VERSION"), fingerprint(arguments)?);
         let known = if path.exists() { fs::read_to_string(&path).map_err(fault)? } else { String::new() };

@@ -38,6 +38,8 @@ pub(crate) struct ShapeReader<'a> {
     meshes: HashMap<(PathBuf, [u64; 3]), Arc<MeshTree>>,
     /// What has to be said of shapes that are not exact.
     pub(crate) remarks: Vec<String>,
+    /// The files of meshes that were read, with those that they name.
+    pub(crate) files: Vec<PathBuf>,
 }
 
 /// Sides of the prism for a cylinder: it reaches 1/cos(π/96) − 1 = 0.054 % of the radius beyond it.
@@ -61,7 +63,7 @@ impl Shape {
 
 impl<'a> ShapeReader<'a> {
     pub(crate) fn new(file: &'a str, folder: &'a Path, options: &'a RobotOptions) -> Self {
-        Self { file, folder, options, meshes: HashMap::new(), remarks: Vec::new() }
+        Self { file, folder, options, meshes: HashMap::new(), remarks: Vec::new(), files: Vec::new() }
     }
 
     pub(crate) fn body(&mut self, link: &str, collision: &UrdfCollision) -> Result<LinkBody, RobotError> {
@@ -118,6 +120,7 @@ impl<'a> ShapeReader<'a> {
             link: link.to_owned(),
             source: Box::new(source),
         })?;
+        self.files.extend(read.report.files);
         let tree = Arc::new(MeshTree::new(read.mesh));
         self.meshes.insert(key, Arc::clone(&tree));
         Ok(tree)

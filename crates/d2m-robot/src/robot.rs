@@ -12,7 +12,7 @@ use d2m_motion::{Arm, Chain, Joint, JointKind, JointValue};
 use glam::DVec3;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Links of one robot at most, and collision bodies: all their pairs are kept.
@@ -55,6 +55,7 @@ pub struct Robot {
     /// Where each joint is in the arm.
     joint_places: Vec<usize>,
     remarks: Vec<String>,
+    files: Vec<PathBuf>,
 }
 
 #[derive(Debug, Clone)]
@@ -108,7 +109,7 @@ impl Robot {
             let (name, inertial) = (link.name.clone(), link.inertial);
             links.push(Link { name, joints: 0..0, bodies, inertial });
         }
-        let mut remarks = reader.remarks;
+        let ShapeReader { mut remarks, files, .. } = reader;
         let JointReader { joints, remarks: of_joints, .. } = JointReader::read(file, &urdf, &tree.ends)?;
         remarks.extend(of_joints);
         for (index, joint) in joints.iter().enumerate() {
@@ -131,6 +132,7 @@ impl Robot {
             places,
             joint_places,
             remarks,
+            files,
         })
     }
 
@@ -271,6 +273,11 @@ impl Robot {
     /// What is not exact in the bodies of the links, and by how much: one sentence each.
     pub fn remarks(&self) -> &[String] {
         &self.remarks
+    }
+
+    /// The files of the meshes that were read, each with those that it names, as buffers of glTF.
+    pub fn files(&self) -> &[PathBuf] {
+        &self.files
     }
 
     /// Does a joint join these links directly?

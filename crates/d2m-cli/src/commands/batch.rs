@@ -32,6 +32,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
     let wanted = arguments.further;
     let trials = trials::load(&arguments.trials)?;
     let [a, b] = load_both(&arguments.a, &arguments.b, &arguments.query.sizes)?;
+    out.spare_inputs()?;
     let pair = Pair::new(a, b, &arguments.query)?;
     let mut partial = if arguments.resume { Some(Partial::open(arguments, &out)?) } else { None };
     let known = partial.as_ref().map_or(0, Partial::count).min(trials.len());

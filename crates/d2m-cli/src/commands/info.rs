@@ -28,6 +28,7 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
         [output(&arguments.obj, "obj")?, output(&arguments.ply, "ply")?, output(&arguments.glb, "glb")?];
     require_distinct([&obj, &ply, &glb].into_iter().flatten())?;
     let body = load_one(source, &arguments.size)?;
+    [&obj, &ply, &glb].into_iter().flatten().try_for_each(Output::spare_inputs)?;
     // A large mesh takes a second for each.
     let (validation, parts) = rayon::join(|| Validation::new(body.mesh()), || MeshParts::new(body.mesh()));
     if let Some(obj) = obj {

@@ -4,6 +4,7 @@ use super::robot_proof::{Proof, prove};
 use crate::arguments::RobotArguments;
 use crate::engine::{number, threads, time_limit};
 use crate::failure::Failure;
+use crate::inputs;
 use crate::let_go::{Beginning, LetGo, at_start, exception};
 use crate::load::named;
 use crate::outcome::Outcome;
@@ -56,6 +57,9 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     }
     let robot =
         Robot::read(&arguments.robot, &robot_options).map_err(|error| Failure::Input(error.to_string()))?;
+    for file in robot.files() {
+        inputs::remember(file);
+    }
     // Before the scene, which may have to warn: a fault is one line alone.
     robot.link_motions(&path).map_err(|error| Failure::at(&place, error))?;
     let srdf = arguments.srdf.as_ref().map(Srdf::read).transpose();
@@ -79,6 +83,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
     if let Some(file) = &file {
         file.add_to(&mut scene, window)?;
     }
+    page.as_ref().map_or(Ok(()), Output::spare_inputs)?;
     let warnings = scene.limit_warnings(&path).map_err(fault)?;
     let checked = {
         let bodies = scene.bodies_along(&path).map_err(fault)?;

@@ -19,6 +19,7 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<(), Failure> {
     let every = arguments.every.as_ref().map(|text| number("--every", text, "a positive time", |t| t > 0.0));
     let every = every.transpose()?;
     let scene = read_scene(&arguments.scene)?;
+    out.spare_inputs()?;
     if let Some(every) = every.filter(|&every| !are_told_apart(every, scene.end)) {
         let end = scene.end;
         return Err(Failure::at(

@@ -60,6 +60,7 @@ pub(crate) fn run(arguments: &TocArguments) -> Result<Outcome, Failure> {
     let TocArguments { pair: asked, .. } = arguments;
     let posed = posed_file(arguments)?;
     let MovingPair { pair, motion_a, motion_b, window, travels } = read(asked)?;
+    posed.as_ref().map_or(Ok(()), Output::spare_inputs)?;
     let answer = pair.answer_with([&motion_a, &motion_b], window, arguments.further)?;
     if let Some(posed) = posed {
         let time = match &answer.verdict {

@@ -46,6 +46,7 @@ pub(crate) fn run(arguments: &ViewArguments) -> Result<(), Failure> {
         None if is_scene => picture_of_scene(Path::new(&arguments.a), options_of(&arguments.query)?)?,
         None => return Err(Failure::at("B", "the second mesh is missing")),
     };
+    [&page, &png].into_iter().flatten().try_for_each(Output::spare_inputs)?;
     if let Some(up) = arguments.up {
         picture.up = up;
     }

@@ -1,6 +1,7 @@
 //! The bytes of an input.
 
 use crate::failure::Failure;
+use crate::inputs;
 use d2m_io::{read_bytes, read_unsized};
 use std::io;
 use std::path::Path;
@@ -15,8 +16,11 @@ const STANDARD_INPUT: &str = "standard input";
 /// The bytes of a file, or of standard input for `-`; there must be some.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     if path != Path::new("-") {
+        inputs::remember(path);
         return Ok(read_bytes(path)?);
     }
+    // It may be a file that the shell opened.
+    inputs::remember(Path::new("/dev/stdin"));
     let bytes = read_unsized(io::stdin().lock()).map_err(|error| Failure::at(STANDARD_INPUT, error))?;
     if bytes.is_empty() { Err(Failure::at(STANDARD_INPUT, "is empty")) } else { Ok(bytes) }
 }

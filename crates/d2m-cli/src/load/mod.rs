@@ -5,6 +5,7 @@ mod bytes;
 pub(crate) use bytes::{named, read};
 
 use crate::failure::Failure;
+use crate::inputs;
 use crate::output::{note, progress_bar, short};
 use d2m::bvh::{MeshTree, TriMesh};
 use d2m::shapes::{self, SHAPES};
@@ -109,6 +110,9 @@ pub(crate) fn load_with(source: &str, options: &ReadOptions) -> Result<Loaded, F
         return Err(Failure::at(source, format!("unknown kind of mesh: {expected}{hint}")));
     }
     let ReadMesh { mesh, report } = read_mesh_with(path, options)?;
+    for file in &report.files {
+        inputs::remember(file);
+    }
     if let (Some(unit), Some(stated)) = (options.unit, report.meters_per_unit)
         && unit.to_meters(1.0) != stated
     {

@@ -90,3 +90,21 @@ pub(crate) fn refused(arguments: &[&str], words: &[&str]) {
         assert!(message.contains(word), "{arguments:?}: {message:?} lacks {word:?}");
     }
 }
+
+/// A glTF file with the tetrahedron between the origin and the points at this distance on the axes, whose numbers are in a file beside it.
+pub(crate) fn tetrahedron_in_gltf(folder: &Folder, name: &str, size: f32) -> String {
+    let corners = [[0.0; 3], [size, 0.0, 0.0], [0.0, size, 0.0], [0.0, 0.0, size]];
+    let faces: [[u16; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let mut bytes: Vec<u8> = corners.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    bytes.extend(faces.iter().flatten().flat_map(|vertex| vertex.to_le_bytes()));
+    fs::write(folder.path(&format!("{name}.bin")), bytes).unwrap();
+    let text = format!(
+        r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}], "nodes": [{{"mesh": 0}}],
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "indices": 1}}]}}],
+        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [{size}, {size}, {size}]}},
+            {{"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 48}}, {{"buffer": 0, "byteOffset": 48, "byteLength": 24}}],
+        "buffers": [{{"uri": "{name}.bin", "byteLength": 72}}]}}"#
+    );
+    folder.file(&format!("{name}.gltf"), &text)
+}

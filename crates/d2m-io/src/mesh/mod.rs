@@ -89,7 +89,10 @@ pub fn read_mesh_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<R
     let format = MeshFormat::from_path(path).ok_or_else(|| IoError::UnknownFormat { file: name() })?;
     let bytes = read_bytes(path)?;
     let folder = Some(path.parent().unwrap_or(Path::new("")));
-    parse(&Source { bytes: &bytes, folder }, format, options).map_err(|error| error.in_file(name()))
+    let read = parse(&Source { bytes: &bytes, folder }, format, options);
+    let mut read = read.map_err(|error| error.in_file(name()))?;
+    read.report.files.insert(0, path.to_owned());
+    Ok(read)
 }
 
 /// The mesh that the bytes of a file hold.

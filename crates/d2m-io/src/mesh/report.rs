@@ -1,6 +1,7 @@
 //! How a mesh was read.
 
 use super::PolygonCounts;
+use std::path::PathBuf;
 
 /// How exactly a file stated a mesh, and what was cut or left out.
 ///
@@ -9,9 +10,10 @@ use super::PolygonCounts;
 /// let square = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 /// let report = parse_mesh(square, MeshFormat::Obj, &ReadOptions::new())?.report;
 /// assert_eq!((report.polygons.cut, report.precision, report.up_axis), (1, Precision::Double, None));
+/// assert!(report.files.is_empty(), "it was read from bytes");
 /// # Ok::<(), d2m_io::IoError>(())
 /// ```
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct MeshReport {
     /// The polygons that were cut into triangles.
@@ -22,6 +24,8 @@ pub struct MeshReport {
     pub meters_per_unit: Option<f64>,
     /// The axis that the file calls "up". Nothing is turned for it.
     pub up_axis: Option<UpAxis>,
+    /// The files that were read: the one that was asked for, then those that it names, as buffers of glTF.
+    pub files: Vec<PathBuf>,
 }
 
 /// An axis that points up.

@@ -9,7 +9,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
 use std::borrow::Cow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A vertex or a triangle takes twelve bytes at least, with normals twice as many.
 const BYTES_OF_AN_ELEMENT: usize = 16;
@@ -20,6 +20,8 @@ pub(super) struct Buffers<'a> {
     folder: Option<&'a Path>,
     /// Each buffer once it was read.
     known: Vec<Option<Cow<'a, [u8]>>>,
+    /// The files that buffers were read from.
+    pub(super) files: Vec<PathBuf>,
 }
 
 /// The bytes of the elements of an accessor.
@@ -39,7 +41,7 @@ impl<'b> Elements<'b> {
 
 impl<'a> Buffers<'a> {
     pub(super) fn new(document: &'a Document, binary: Option<&'a [u8]>, folder: Option<&'a Path>) -> Self {
-        Self { document, binary, folder, known: vec![None; document.buffers.len()] }
+        Self { document, binary, folder, known: vec![None; document.buffers.len()], files: Vec::new() }
     }
 
     /// Three coordinates an element.
@@ -157,7 +159,11 @@ impl<'a> Buffers<'a> {
             let bytes: Cow<'a, [u8]> = match (&buffer.uri, self.binary) {
                 (None, Some(binary)) if index == 0 => binary.into(),
                 (None, _) => return Err(fault("it has no uri, and the file no such part".to_owned())),
-                (Some(uri), _) => uri_bytes(uri, self.folder).map_err(fault)?.into(),
+                (Some(uri), _) => {
+                    let Read { bytes, file } = uri_bytes(uri, self.folder).map_err(fault)?;
+                    self.files.extend(file);
+                    bytes.into()
+                }
             };
             // Many buffers may name one file.
             allowance.spend(bytes.len() / BYTES_OF_AN_ELEMENT)?;
@@ -171,11 +177,19 @@ impl<'a> Buffers<'a> {
     }
 }
 
+/// The bytes of a buffer.
+struct Read {
+    bytes: Vec<u8>,
+    /// None: they are in the text itself.
+    file: Option<PathBuf>,
+}
+
 /// Bytes in the text itself, or of a file beside it.
-fn uri_bytes(uri: &str, folder: Option<&Path>) -> Result<Vec<u8>, String> {
+fn uri_bytes(uri: &str, folder: Option<&Path>) -> Result<Read, String> {
     if let Some(data) = uri.strip_prefix("data:") {
         let (_, text) = data.split_once(";base64,").ok_or("a data uri that is not base64")?;
-        return STANDARD.decode(text.trim()).map_err(|error| format!("base64: {error}"));
+        let bytes = STANDARD.decode(text.trim()).map_err(|error| format!("base64: {error}"))?;
+        return Ok(Read { bytes, file: None });
     }
     let path = percent_decoded(uri);
     let shown = excerpt(&path);
@@ -183,7 +197,9 @@ fn uri_bytes(uri: &str, folder: Option<&Path>) -> Result<Vec<u8>, String> {
         return Err(format!("{shown} is not a file beside this one"));
     }
     let folder = folder.ok_or_else(|| format!("it is in the file {shown}, which bytes alone cannot name"))?;
-    read_bytes(&folder.join(path)).map_err(|error| error.to_string())
+    let file = folder.join(path);
+    let bytes = read_bytes(&file).map_err(|error| error.to_string())?;
+    Ok(Read { bytes, file: Some(file) })
 }
 
 fn percent_decoded(uri: &str) -> String {

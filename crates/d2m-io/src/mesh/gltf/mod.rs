@@ -40,6 +40,7 @@ pub(super) fn parse(source: &Source<'_>) -> Result<RawMesh, Fault> {
     raw.report.precision = Precision::Single("glTF");
     raw.report.meters_per_unit = Some(1.0);
     raw.report.up_axis = Some(UpAxis::Y);
+    raw.report.files = buffers.files;
     Ok(raw)
 }
 
