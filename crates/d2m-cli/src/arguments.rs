@@ -152,7 +152,8 @@ d2m toc --help explains. What an answer does not have is empty. With --start lea
 parted; empty where they never did), with --clearance two columns clearance_lo,clearance_hi (of bodies that stay apart).
 
 Exit codes: 0 answered, 2 bad usage, 3 bad input. No results are written unless all trials are answered. With --resume the answers so far stay
-in R.csv.part if the run is ended, and the next run with --resume and the same inputs goes on behind them.
+in R.csv.part if the run is ended, and the next run with --resume and the same inputs goes on behind them; with --verify it asks those of them
+again that it has to prove.
 
 Examples:
   d2m batch A.obj B.obj --trials trials.csv --out results.csv --threads 8

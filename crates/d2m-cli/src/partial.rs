@@ -1,6 +1,7 @@
 //! The answers of a batch that was ended, kept beside its results.
 
 use crate::arguments::BatchArguments;
+use crate::engine::Pair;
 use crate::failure::Failure;
 use crate::output::Output;
 use std::fs::{self, File, OpenOptions};
@@ -17,14 +18,14 @@ pub(crate) struct Partial {
 
 impl Partial {
     /// Opens what an earlier run left, or begins anew. What comes of other inputs is refused; half a line is dropped.
-    pub(crate) fn open(arguments: &BatchArguments, out: &Output) -> Result<Self, Failure> {
+    pub(crate) fn open(arguments: &BatchArguments, pair: &Pair, out: &Output) -> Result<Self, Failure> {
         let Output::File(out) = out else {
             return Err(Failure::at("--resume", "standard output keeps no answers: name a file with --out"));
         };
         let path = PathBuf::from(format!("{}.part", out.display()));
         Output::File(path.clone()).spare_inputs()?;
         let fault = |error: std::io::Error| Failure::at(path.display(), error);
-        let origin = format!("# d2m {} {:016x}\n", env!("CARGO_PKG_VERSION"), fingerprint(arguments)?);
+        let origin = format!("# d2m {} {:016x}\n", env!("CARGO_PKG_VERSION"), fingerprint(arguments, pair)?);
         let known = if path.exists() { fs::read_to_string(&path).map_err(fault)? } else { String::new() };
         let lines = match known.strip_prefix(&origin) {
             Some(lines) => lines[..lines.rfind('\n').map_or(0, |end| end + 1)].to_owned(),
@@ -65,8 +66,9 @@ impl Partial {
     }
 }
 
-/// A number that differs for different inputs: the bytes of the files and the options that change answers (FNV-1a).
-fn fingerprint(arguments: &BatchArguments) -> Result<u64, Failure> {
+/// A number that differs for different inputs: the bytes of the files, the meshes as they were read, whatever files those name, and the options that
+/// change answers (FNV-1a).
+fn fingerprint(arguments: &BatchArguments, pair: &Pair) -> Result<u64, Failure> {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut add = |bytes: &[u8]| {
         for byte in bytes.iter().chain(&[0]) {
@@ -78,6 +80,14 @@ fn fingerprint(arguments: &BatchArguments) -> Result<u64, Failure> {
         add(input.as_os_str().as_encoded_bytes());
         if input.is_file() {
             add(&fs::read(input).map_err(|error| Failure::at(input.display(), error))?);
+        }
+    }
+    for mesh in [pair.a.mesh(), pair.b.mesh()] {
+        for vertex in mesh.vertices() {
+            add(&vertex.to_array().map(f64::to_le_bytes).concat());
+        }
+        for corners in mesh.triangles() {
+            add(&corners.map(u32::to_le_bytes).concat());
         }
     }
     Ok(hash)

@@ -1,6 +1,6 @@
 //! `d2m batch`: many trials of one pair.
 
-use crate::arguments::BatchArguments;
+use crate::arguments::{BatchArguments, FurtherArguments};
 use crate::engine::{Answer, Pair, number, threads};
 use crate::failure::Failure;
 use crate::load::named;
@@ -12,8 +12,10 @@ use crate::sizes::load_both;
 use crate::travel::Travel;
 use crate::trials::{self, Trial};
 use crate::verification::{PairVerifier, joined, promises_of};
+use d2m::bvh::TimeOfContact;
 use d2m::motion::RigidMotion;
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
 
@@ -34,40 +36,43 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
     let [a, b] = load_both(&arguments.a, &arguments.b, &arguments.query.sizes)?;
     out.spare_inputs()?;
     let pair = Pair::new(a, b, &arguments.query)?;
-    let mut partial = if arguments.resume { Some(Partial::open(arguments, &out)?) } else { None };
+    let mut partial = if arguments.resume { Some(Partial::open(arguments, &pair, &out)?) } else { None };
     let known = partial.as_ref().map_or(0, Partial::count).min(trials.len());
+    // The lines of an ended run hold less than a proof needs: what is to be proven of them is asked again.
+    let again: Vec<usize> = (0..known).filter(|&trial| is_proven(share, trial)).collect();
     if known > 0 {
-        note(&format!("{known} of {} trials were answered before", trials.len()));
+        let again = match again.len() {
+            0 => String::new(),
+            count => format!("; {count} of them are asked again, to be proven"),
+        };
+        note(&format!("{known} of {} trials were answered before{again}", trials.len()));
     }
-    let bar = progress_bar(trials.len(), "trials");
+    let bar = progress_bar(trials.len() + again.len(), "trials");
     bar.set_position(known as u64);
     let start = Instant::now();
-    let answer = |(index, trial): (usize, &Trial)| {
-        let answer = pair.answer_trial(trial, wanted);
+    let answer = |trial: usize| {
+        let asked = &trials[trial];
+        let answer = pair.answer_trial(asked, wanted);
         bar.inc(1);
-        let place = || format!("{}, line {} (trial {index})", named(&arguments.trials), trial.line);
-        answer.map_err(|failure| Failure::at(place(), failure))
+        let place = || format!("{}, line {} (trial {trial})", named(&arguments.trials), asked.line);
+        answer.map(|answer| Answered { trial, answer }).map_err(|failure| Failure::at(place(), failure))
     };
     let pool = threads(arguments.threads.into())?;
-    let mut answers: Vec<Answer> = Vec::with_capacity(trials.len() - known);
+    let answer_all = |trials: Vec<usize>| -> Result<Vec<Answered>, Failure> {
+        if arguments.threads == 1 {
+            trials.into_iter().map(answer).collect()
+        } else {
+            pool.install(|| trials.into_par_iter().map(answer).collect())
+        }
+    };
+    let again = answer_all(again)?;
+    let mut answers: Vec<Answered> = Vec::with_capacity(trials.len() - known);
     // Without --resume all at once; with it in parts that are kept.
     let part = if arguments.resume { PART } else { trials.len() };
     for first in (known..trials.len()).step_by(part) {
-        let chunk = &trials[first..trials.len().min(first + part)];
-        let found: Result<Vec<Answer>, Failure> = if arguments.threads == 1 {
-            chunk.iter().enumerate().map(|(index, trial)| answer((first + index, trial))).collect()
-        } else {
-            pool.install(|| {
-                chunk.par_iter().enumerate().map(|(index, trial)| answer((first + index, trial))).collect()
-            })
-        };
-        let found = found?;
+        let found = answer_all((first..trials.len().min(first + part)).collect())?;
         if let Some(partial) = &mut partial {
-            let lines = found
-                .iter()
-                .enumerate()
-                .map(|(index, answer)| report::csv_line(first + index, answer, wanted));
-            partial.append(&lines.collect::<String>())?;
+            partial.append(&found.iter().map(|found| found.line(wanted)).collect::<String>())?;
         }
         answers.extend(found);
     }
@@ -75,11 +80,13 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
     bar.finish_and_clear();
     let mut text = report::csv_header(wanted);
     if let Some(partial) = &partial {
-        text.push_str(partial.lines());
-    } else {
-        for (trial, answer) in answers.iter().enumerate() {
-            text.push_str(&report::csv_line(trial, answer, wanted));
+        let mut lines: Vec<Cow<'_, str>> = partial.lines().split_inclusive('\n').map(Cow::Borrowed).collect();
+        for found in &again {
+            lines[found.trial] = Cow::Owned(found.line(wanted));
         }
+        text.extend(lines);
+    } else {
+        text.extend(answers.iter().map(|found| found.line(wanted)));
     }
     out.write(&text)?;
     if let Some(partial) = partial {
@@ -94,10 +101,29 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
         report::duration(elapsed)
     ));
     warn_of_orientations(arguments, &trials);
-    match share {
-        Some(share) => prove(share, &pair, &trials[known..], &answers),
-        None => Ok(Outcome::Answered),
+    if share.is_none() {
+        return Ok(Outcome::Answered);
     }
+    let chosen = again.iter().chain(answers.iter().filter(|found| is_proven(share, found.trial)));
+    prove(&pair, &trials, chosen)
+}
+
+/// The answer to a trial, by its number in the results.
+struct Answered {
+    trial: usize,
+    answer: Answer,
+}
+
+impl Answered {
+    /// Its line of the results.
+    fn line(&self, wanted: FurtherArguments) -> String {
+        report::csv_line(self.trial, &self.answer, wanted)
+    }
+}
+
+/// Is a trial of the share that is proven again? They are evenly spread over all trials.
+fn is_proven(share: Option<f64>, trial: usize) -> bool {
+    share.is_some_and(|share| ((trial + 1) as f64 * share).floor() > (trial as f64 * share).floor())
 }
 
 /// Trials that are kept together by `--resume`: some milliseconds to a second of work.
@@ -125,12 +151,16 @@ fn warn_of_orientations(arguments: &BatchArguments, trials: &[Trial]) {
     warn(&turns, "a body that turns more than once in the window (angles are radians)");
 }
 
-/// Proves a share of the answers again, evenly spread.
-fn prove(share: f64, pair: &Pair, trials: &[Trial], answers: &[Answer]) -> Result<Outcome, Failure> {
+/// Proves answers again.
+fn prove<'a>(
+    pair: &Pair,
+    trials: &[Trial],
+    answers: impl Iterator<Item = &'a Answered>,
+) -> Result<Outcome, Failure> {
     let verifier = PairVerifier::new(pair)?;
-    let is_chosen = |index: usize| ((index + 1) as f64 * share).floor() > (index as f64 * share).floor();
     let (mut verified, mut count, mut outcome) = (0, 0, Outcome::Answered);
-    for (index, (trial, answer)) in trials.iter().zip(answers).enumerate().filter(|(k, _)| is_chosen(*k)) {
+    for Answered { trial: index, answer } in answers {
+        let trial = &trials[*index];
         let motions: [&dyn RigidMotion; 2] = [&trial.motion_a, &trial.motion_b];
         let promises = promises_of(answer);
         let proof = joined(promises.iter().map(|promise| verifier.prove(motions, trial.window, promise)));
@@ -148,12 +178,12 @@ fn prove(share: f64, pair: &Pair, trials: &[Trial], answers: &[Answer]) -> Resul
 }
 
 /// Counts of the verdicts, median and worst time, largest separation.
-fn summary(answers: &[Answer]) -> String {
-    let count = |word: &str| answers.iter().filter(|answer| report::status(&answer.verdict) == word).count();
-    let mut times: Vec<_> = answers.iter().map(|answer| answer.took).collect();
+fn summary(answers: &[Answered]) -> String {
+    let verdicts = || answers.iter().map(|found| &found.answer.verdict);
+    let count = |word: &str| verdicts().filter(|verdict| report::status(verdict) == word).count();
+    let mut times: Vec<_> = answers.iter().map(|found| found.answer.took).collect();
     times.sort_unstable();
-    let separations =
-        answers.iter().filter_map(|answer| answer.verdict.contact()).map(|contact| contact.separation);
+    let separations = verdicts().filter_map(TimeOfContact::contact).map(|contact| contact.separation);
     let (median, worst) = (times[times.len() / 2], times[times.len() - 1]);
     format!(
         "{} trials: {} contact, {} separated, {} undecided; median {}, worst {}; largest separation {:.3e}",
