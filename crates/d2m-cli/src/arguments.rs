@@ -360,6 +360,7 @@ pub(crate) struct InfoArguments {
 #[derive(Debug, Args)]
 #[command(after_help = "\
 The page is one file that needs no network: a time slider, the moving meshes, contact points with their normals.
+A scene states motions, window, sizes and separations itself; a run is shown as it is: such options are refused beside them.
 
 Exit codes: 0 written, 2 bad usage, 3 bad input.
 

@@ -195,3 +195,56 @@ fn bodies_are_shown_with_their_radius() {
     let of_pair = data(&stdout(&d2m(&pair)));
     assert_eq!(of_pair["meshes"][0], of_scene["meshes"][0]);
 }
+
+/// Options that the scene says itself, or that a run knows nothing of, are refused and not ignored.
+#[test]
+fn options_that_say_nothing_of_what_is_viewed_are_refused() {
+    let folder = Folder::new("view-options");
+    let scene = |terms: &str| {
+        format!(
+            r#"{{{terms} "bodies": [{{"name": "a", "mesh": "{UNIT_BOX}"}}, {{"name": "b", "mesh": "{UNIT_BOX}", "motion": {{"x": [5, 0, 0]}}}}]}}"#
+        )
+    };
+    let plain = folder.file("plain.json", &scene(""));
+    let own = folder.file("own.json", &scene(r#""tolerance": 1e-6,"#));
+    let said = "the scene says this itself, in its file";
+    let options = [
+        ["--min-separation", "2"],
+        ["--window", "0,5"],
+        ["--window", "0,1"],
+        ["--motion-a", "v=1,0,0"],
+        ["--motion-b", "v=1,0,0"],
+        ["--scale-a", "2"],
+        ["--scale-b", "2"],
+        ["--unit-a", "mm"],
+        ["--unit-b", "mm"],
+        ["--radius-a", "1"],
+        ["--radius-b", "1"],
+    ];
+    let refused = |file: &str, more: &[&str], words: &[&str]| {
+        refused(&[&["view", file, "--out", "-"], more].concat(), words);
+    };
+    for option in options {
+        refused(&plain, &option, &[option[0], said]);
+        refused("run.jsonl", &option, &[option[0], "a run is shown as its file has it"]);
+        refused("run.jsonl.gz", &option, &[option[0]]);
+    }
+    for option in ["--solid", "--surface"] {
+        refused(&plain, &[option], &[option, said]);
+        refused("run.jsonl", &[option], &[option]);
+    }
+    refused(&own, &["--tolerance", "1e-3"], &["--tolerance", said]);
+    refused(&plain, &["--mode", "paper"], &["--mode", "reference method"]);
+    for option in [["--tolerance", "1e-3"], ["--budget", "7"], ["--mode", "capoeira"]] {
+        refused("run.jsonl", &option, &[option[0]]);
+    }
+    // What the search may still be told.
+    for more in
+        [&["--tolerance", "1e-3"][..], &["--budget", "1000", "--time-limit", "9"], &["--mode", "capoeira"]]
+    {
+        let output = d2m(&[&["view", &plain, "--out", "-"], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{more:?}: {}", stderr(&output));
+    }
+    let output = d2m(&["view", &own, "--out", "-"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}

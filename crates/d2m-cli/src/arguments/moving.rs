@@ -73,14 +73,14 @@ pub(crate) struct MotionArguments {
     /// Motion of B; at rest if not given
     #[arg(long, value_name = "M", default_value = "", hide_default_value = true, allow_hyphen_values = true)]
     pub(crate) motion_b: String,
-    /// First and last time
-    #[arg(long, value_name = "T0,T1", default_value = "0,1", allow_hyphen_values = true)]
-    pub(crate) window: String,
+    /// First and last time [default: 0,1]
+    #[arg(long, value_name = "T0,T1", allow_hyphen_values = true)]
+    pub(crate) window: Option<String>,
 }
 
 impl MotionArguments {
     pub(crate) fn parse(&self) -> Result<(Window, [AnyMotion; 2]), Failure> {
-        parse_motions(&self.window, [&self.motion_a, &self.motion_b])
+        parse_motions(self.window.as_deref().unwrap_or("0,1"), [&self.motion_a, &self.motion_b])
     }
 }
 

@@ -1,10 +1,12 @@
 //! `d2m view`: a page of HTML that shows moving bodies, or a still image of them.
 
-use crate::arguments::{FurtherArguments, ViewArguments};
+use super::scene_question::{SAID_BY_THE_SCENE, said_by_scenes};
+use crate::arguments::{FurtherArguments, Method, ViewArguments};
 use crate::engine::{Pair, check_size, options_of};
 use crate::failure::Failure;
 use crate::output::{Output, require_distinct};
 use crate::report;
+use crate::scene::Scene;
 use crate::sizes::load_both;
 use crate::view::{
     DistanceSample, Mark, Picture, StillSize, Up, flights_of, picture_of_run, picture_of_scene, still,
@@ -42,8 +44,11 @@ pub(crate) fn run(arguments: &ViewArguments) -> Result<(), Failure> {
             return Err(Failure::at(b, "a scene or a simulation is viewed alone"));
         }
         Some(b) => pair(arguments, b)?,
-        None if is_run => picture_of_run(Path::new(&arguments.a))?,
-        None if is_scene => picture_of_scene(Path::new(&arguments.a), options_of(&arguments.query)?)?,
+        None if is_run => {
+            refuse_for_run(arguments)?;
+            picture_of_run(Path::new(&arguments.a))?
+        }
+        None if is_scene => scene(arguments)?,
         None => return Err(Failure::at("B", "the second mesh is missing")),
     };
     [&page, &png].into_iter().flatten().try_for_each(Output::spare_inputs)?;
@@ -73,6 +78,38 @@ fn shown_time(arguments: &ViewArguments, picture: &Picture) -> Result<f64, Failu
         return Ok(time);
     }
     Err(Failure::at("--at", format!("{text} is outside of the window [{start:?}, {end:?}]")))
+}
+
+/// A scene and its contacts.
+fn scene(arguments: &ViewArguments) -> Result<Picture, Failure> {
+    let said = said_by_scenes(&arguments.motions, &arguments.query);
+    if let Some(option) = said.first() {
+        return Err(Failure::at(option, SAID_BY_THE_SCENE));
+    }
+    if arguments.query.mode == Method::Paper {
+        return Err(Failure::at("--mode", "the reference method answers no questions of scenes"));
+    }
+    let options = options_of(&arguments.query)?;
+    let scene = Scene::read(Path::new(&arguments.a))?;
+    if options.tolerance.is_some() && scene.states_tolerance() {
+        return Err(Failure::at("--tolerance", SAID_BY_THE_SCENE));
+    }
+    picture_of_scene(&scene, &arguments.a, options)
+}
+
+/// A run is shown as it is: nothing is asked of it.
+fn refuse_for_run(arguments: &ViewArguments) -> Result<(), Failure> {
+    let query = &arguments.query;
+    let asked = [
+        ("--tolerance", query.tolerance.is_some()),
+        ("--budget", query.budget.is_some()),
+        ("--mode", query.mode != Method::Accurate),
+    ];
+    let asked = asked.into_iter().filter_map(|(option, is_given)| is_given.then_some(option));
+    match said_by_scenes(&arguments.motions, query).into_iter().chain(asked).next() {
+        Some(option) => Err(Failure::at(option, "a run is shown as its file has it")),
+        None => Ok(()),
+    }
 }
 
 /// Two moving meshes and their first contact.

@@ -108,6 +108,11 @@ impl Scene {
         self.start == Start::Leave || self.pairs.values().any(|pair| pair.start == Some(Start::Leave))
     }
 
+    /// Has it a tolerance of its own?
+    pub(crate) const fn states_tolerance(&self) -> bool {
+        self.tolerance.is_some()
+    }
+
     /// The options of its queries.
     pub(crate) const fn options(&self, options: QueryOptions) -> QueryOptions {
         let mut options = options.with_min_separation(self.min_separation).with_start(self.start);

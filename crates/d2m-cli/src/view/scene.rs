@@ -4,31 +4,27 @@ use super::pair_spans::spans_of_pairs;
 use super::{Holds, Mark, Picture, Span, Up, flights_of};
 use crate::failure::Failure;
 use crate::let_go::Beginning;
-use crate::load::named;
 use crate::output::short;
 use crate::scene::Scene;
 use d2m::bvh::{MeshTree, QueryOptions, StartState, TimeOfContact, Window};
 use d2m::motion::AnyMotion;
 use d2m::{BodyId, PairContact};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
-use std::path::Path;
 use std::sync::Arc;
 
 /// Lines of text of one kind beside the picture: the first contacts, and the pairs that were let go.
 const MOST_FACTS: usize = 8;
 
-/// Reads a scene and finds its contacts.
-pub(crate) fn picture_of_scene(path: &Path, options: QueryOptions) -> Result<Picture, Failure> {
-    let scene = Scene::read(path)?;
+/// Finds the contacts of a scene, which is in this file.
+pub(crate) fn picture_of_scene(scene: &Scene, file: &str, options: QueryOptions) -> Result<Picture, Failure> {
     let mut world = scene.world(options);
-    let contacts =
-        world.contacts(scene.window).map_err(|error| Failure::at(named(path), scene.describe(error)))?;
+    let contacts = world.contacts(scene.window).map_err(|error| Failure::at(file, scene.describe(error)))?;
     let window = [scene.window.start(), scene.window.end()];
     let [start, end] = window.map(short);
     let headline = format!("{} bodies from t = {start} to {end}", scene.bodies.len());
     let mut picture = Picture::new(headline, window);
     let name = |id: BodyId| scene.bodies[id.index()].name.as_str();
-    let beginnings = beginnings(&scene, options);
+    let beginnings = beginnings(scene, options);
     add_facts(&mut picture, &contacts, &name);
     for pair in beginnings.iter().filter_map(Beginning::let_go).take(MOST_FACTS) {
         picture.add_fact("left", pair.words());
