@@ -6,8 +6,8 @@ use crate::output::short;
 use d2m::bvh::{Solid, StartState, TimeOfContact, Window};
 use d2m_io::{AnswerLines, answer_lines, contact_fields};
 pub(crate) use d2m_io::{
-    evidence_sentence, feature_field, feature_sentence, start_in_json, start_word, vector_words as vector,
-    verdict_word as status,
+    clearance_word, clearance_words, evidence_sentence, feature_field, feature_sentence, start_in_json,
+    start_word, vector_words as vector, verdict_word as status,
 };
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -109,6 +109,7 @@ pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer) -> String {
     }
     if let Some(clearance) = &further.clearance {
         put("clearance", json!([clearance.lower, clearance.upper]));
+        put("clearance_status", json!(clearance_word(clearance.status)));
     }
     if let Some(departure) = &further.departure {
         put("left", json!(departure.left));

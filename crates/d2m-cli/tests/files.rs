@@ -163,6 +163,16 @@ fn inputs_and_read_only_files_are_not_replaced() {
     let (same, mesh) = (folder.path("same.html"), folder.path("mesh.stl"));
     let other = format!("{}/../protected/same.html", folder.path(""));
     refused(&["info", UNIT_BOX, "--obj", "-", "--ply", "-"], &["standard output: two results"]);
+    // The answer itself is a result, too.
+    for answer in [&[][..], &["--json"]] {
+        for mesh in ["--obj", "--ply", "--glb"] {
+            refused(&[&["info", UNIT_BOX, mesh, "-"], answer].concat(), &["standard output: two results"]);
+        }
+        refused(
+            &[&["toc", UNIT_BOX, UNIT_BOX, "--obj", "-"], answer].concat(),
+            &["standard output: two results"],
+        );
+    }
     refused(&["view", UNIT_BOX, UNIT_BOX, "--out", &same, "--png", &same], &["same.html", "--png writes"]);
     let same = same.replace("html", "x");
     let other = other.replace("html", "x");

@@ -24,7 +24,7 @@
 //! ## Answers out
 //! What the command prints and a page shows, in one place:
 //! - JSON: [`contact_fields`], [`clearance_fields`], [`distance_fields`]; [`feature_field`], [`start_in_json`].
-//! - Words: [`verdict_word`], [`start_word`], [`evidence_sentence`], [`feature_sentence`], [`short_number`],
+//! - Words: [`verdict_word`], [`clearance_word`], [`clearance_words`], [`start_word`], [`evidence_sentence`], [`feature_sentence`], [`short_number`],
 //!   [`vector_words`]; all lines of an answer: [`answer_lines`], [`AnswerLines`]; of an error: [`query_fault`]; of a proof:
 //!   [`verdict_sentence`], [`put_verdict`], [`joined_verdict`].
 //! - Times: [`proven_spans`], each a [`ProvenSpan`] of which something [`Holds`].
@@ -49,9 +49,10 @@ mod text;
 mod write;
 
 pub use answer::{
-    AnswerLines, Holds, ProvenSpan, answer_lines, clearance_fields, contact_fields, distance_fields,
-    evidence_sentence, feature_field, feature_sentence, joined_verdict, proven_spans, put_verdict,
-    query_fault, short_number, start_in_json, start_word, vector_words, verdict_sentence, verdict_word,
+    AnswerLines, Holds, ProvenSpan, answer_lines, clearance_fields, clearance_word, clearance_words,
+    contact_fields, distance_fields, evidence_sentence, feature_field, feature_sentence, joined_verdict,
+    proven_spans, put_verdict, query_fault, short_number, start_in_json, start_word, vector_words,
+    verdict_sentence, verdict_word,
 };
 pub use bytes::{read_bytes, read_unsized};
 pub use error::{IoError, Place};

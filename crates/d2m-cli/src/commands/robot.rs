@@ -9,7 +9,7 @@ use crate::let_go::{Beginning, LetGo, at_start, exception};
 use crate::load::named;
 use crate::outcome::Outcome;
 use crate::output::{Output, digits, note, print, short};
-use crate::report::{evidence_sentence, vector};
+use crate::report::{clearance_word, clearance_words, evidence_sentence, vector};
 use crate::robot_path::read_path;
 use crate::robot_scene::RobotSceneFile;
 use crate::travel::Travel;
@@ -275,11 +275,12 @@ fn json(
         }
         PathAnswer::Free { .. } => {}
     }
-    if let Some(PathClearance { lower, upper, time, a, b, .. }) = clearance {
+    if let Some(PathClearance { lower, upper, time, a, b, status, .. }) = clearance {
         put("a", json!(a));
         put("b", json!(b));
         put("clearance", json!([lower, upper]));
         put("clearance_time", json!(time));
+        put("clearance_status", json!(clearance_word(*status)));
     }
     if !let_go.is_empty() {
         put("left", let_go.iter().map(|pair| pair.json()).collect());
@@ -295,9 +296,9 @@ fn json(
 }
 
 /// How near a free path comes, for a person.
-fn nearness(PathClearance { lower, upper, time, a, b, .. }: &PathClearance) -> String {
-    let [lower, upper, time] = [*lower, *upper, *time].map(short);
-    format!("  clearance   [{lower}, {upper}], {a} \u{2013} {b} at t = {time}\n")
+fn nearness(PathClearance { lower, upper, time, a, b, status, .. }: &PathClearance) -> String {
+    let (enclosure, time) = (clearance_words([*lower, *upper], *status), short(*time));
+    format!("  clearance   {enclosure}, {a} \u{2013} {b} at t = {time}\n")
 }
 
 const fn status(answer: &PathAnswer) -> &'static str {

@@ -4,7 +4,7 @@ use crate::arguments::{MotionArguments, PairArguments, TocArguments};
 use crate::engine::{Pair, check_size};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
-use crate::output::{Output, print_answer};
+use crate::output::{Output, print_answer, require_distinct};
 use crate::report;
 use crate::sizes::{load_both, sizes_line};
 use crate::travel::{Travel, warn_of_turn};
@@ -42,17 +42,19 @@ pub(super) fn read(arguments: &PairArguments) -> Result<MovingPair, Failure> {
     Ok(MovingPair { pair, motion_a, motion_b, window, travels })
 }
 
-/// Where `--obj` writes to: never over what is read.
+/// Where `--obj` writes to: never over what is read, nor between the answer.
 fn posed_file(arguments: &TocArguments) -> Result<Option<Output>, Failure> {
     let MotionArguments { motion_a, motion_b, .. } = &arguments.pair.motions;
     let motion_files = [motion_a, motion_b].map(|motion| motion.strip_prefix('@'));
     let meshes = [Some(arguments.pair.a.as_str()), arguments.pair.b.as_deref()];
     let inputs = motion_files.into_iter().chain(meshes).flatten().map(Path::new);
-    arguments
-        .obj
-        .as_deref()
-        .map(|path| Output::new(path)?.spare(inputs)?.called("--obj", &["obj"]))
-        .transpose()
+    let posed = arguments.obj.as_deref().map(|path| {
+        let posed = Output::new(path)?.spare(inputs)?.called("--obj", &["obj"])?;
+        // Where the answer goes.
+        require_distinct([&Output::Stdout, &posed])?;
+        Ok(posed)
+    });
+    posed.transpose()
 }
 
 /// Runs the command.

@@ -1,7 +1,7 @@
 //! Answers as JSON objects: what is stated of them wherever they are written.
 
-use super::words::{feature_field, start_in_json, verdict_word};
-use d2m_bvh::{Clearance, ClearanceStatus, Distance, StartState, TimeOfContact, Window};
+use super::words::{clearance_word, feature_field, start_in_json, verdict_word};
+use d2m_bvh::{Clearance, Distance, StartState, TimeOfContact, Window};
 use serde_json::{Map, Value, json};
 
 /// What is stated of a first contact: the fields of [`Contact`](d2m_bvh::Contact) under their own names, the time as `toc`, `toc_hi`
@@ -64,13 +64,8 @@ pub fn contact_fields(verdict: &TimeOfContact, window: Window) -> Map<String, Va
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn clearance_fields(found: &Clearance) -> Value {
-    let status = match found.status {
-        ClearanceStatus::Clear => "clear",
-        ClearanceStatus::Contact => "contact",
-        ClearanceStatus::Undecided => "undecided",
-    };
     json!({
-        "status": status,
+        "status": clearance_word(found.status),
         "clearance": [found.lower, found.upper],
         "time": found.time,
         "point_a": found.point_a.to_array(),

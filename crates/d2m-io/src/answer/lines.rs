@@ -1,6 +1,8 @@
 //! The answer of a query for a person: a headline and lines, each with a label.
 
-use super::words::{evidence_sentence, feature_sentence, fixed, short_number, start_word, vector_words};
+use super::words::{
+    clearance_words, evidence_sentence, feature_sentence, fixed, short_number, start_word, vector_words,
+};
 use d2m_bvh::{Clearance, Contact, QueryOptions, StartState, TimeOfContact, Window};
 
 /// A headline and lines, each with a label. What the command prints and a page shows.
@@ -41,8 +43,8 @@ pub fn answer_lines(
         TimeOfContact::Separated => {
             line("certified", format!("no contact anywhere from {start} to {end}"));
             if let Some(found) = clearance {
-                let [lower, upper] = [found.lower, found.upper].map(short_number);
-                line("clearance", format!("[{lower}, {upper}] at t = {}", short_number(found.time)));
+                let enclosure = clearance_words([found.lower, found.upper], found.status);
+                line("clearance", format!("{enclosure} at t = {}", short_number(found.time)));
             }
             "SEPARATED".to_owned()
         }

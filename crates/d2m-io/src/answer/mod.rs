@@ -13,6 +13,6 @@ pub use lines::{AnswerLines, answer_lines};
 pub use proof::{joined_verdict, put_verdict, verdict_sentence};
 pub use span::{Holds, ProvenSpan, proven_spans};
 pub use words::{
-    evidence_sentence, feature_field, feature_sentence, short_number, start_in_json, start_word,
-    vector_words, verdict_word,
+    clearance_word, clearance_words, evidence_sentence, feature_field, feature_sentence, short_number,
+    start_in_json, start_word, vector_words, verdict_word,
 };

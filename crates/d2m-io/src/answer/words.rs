@@ -1,6 +1,6 @@
 //! The words of an answer. None states more than what is proven.
 
-use d2m_bvh::{Contact, Evidence, StartState, TimeOfContact};
+use d2m_bvh::{ClearanceStatus, Contact, Evidence, StartState, TimeOfContact};
 use d2m_feature::FeaturePair;
 use glam::DVec3;
 
@@ -45,6 +45,35 @@ pub fn feature_sentence(feature: FeaturePair) -> String {
             format!("edge {p}\u{2013}{q} of A against edge {r}\u{2013}{s} of B")
         }
     }
+}
+
+/// One word for what is known of a least distance.
+///
+/// ```
+/// assert_eq!(d2m_io::clearance_word(d2m_bvh::ClearanceStatus::Undecided), "undecided");
+/// ```
+pub const fn clearance_word(status: ClearanceStatus) -> &'static str {
+    match status {
+        ClearanceStatus::Clear => "clear",
+        ClearanceStatus::Contact => "contact",
+        ClearanceStatus::Undecided => "undecided",
+    }
+}
+
+/// A least distance in one line: its enclosure, and that it is wider than it was to be where the search was ended.
+///
+/// ```
+/// use d2m_bvh::ClearanceStatus;
+/// assert_eq!(d2m_io::clearance_words([0.5, 0.75], ClearanceStatus::Clear), "[0.5, 0.75]");
+/// assert!(d2m_io::clearance_words([0.0, 0.75], ClearanceStatus::Undecided).starts_with("[0, 0.75] (undecided"));
+/// ```
+pub fn clearance_words([lower, upper]: [f64; 2], status: ClearanceStatus) -> String {
+    let [lower, upper] = [lower, upper].map(short_number);
+    let ended = match status {
+        ClearanceStatus::Clear | ClearanceStatus::Contact => "",
+        ClearanceStatus::Undecided => " (undecided: the budget or the time was used up)",
+    };
+    format!("[{lower}, {upper}]{ended}")
 }
 
 /// One word for how bodies stand at a time.
