@@ -1,6 +1,6 @@
 //! Pairs that are in contact at the start and are let go: no first contact says so.
 
-use crate::output::short;
+use crate::output::{printable, short};
 use d2m::bvh::{
     Moving, QueryOptions, Start, StartState, TimeBracket, TimeOfContact, Window, departure, time_of_contact,
 };
@@ -65,7 +65,8 @@ impl LetGo {
 
     /// For a person.
     pub(crate) fn words(&self) -> String {
-        let Self { names: [a, b], start, left } = self;
+        let Self { names, start, left } = self;
+        let [a, b] = names.each_ref().map(|name| printable(name));
         format!("{a} \u{2013} {b}: {} at the start, proven apart at {}", start_word(*start), short(left.hi))
     }
 }

@@ -6,6 +6,7 @@ use crate::failure::{Failure, parse_json};
 use crate::load::read;
 use crate::motion::file_hint;
 use crate::orientation::{warn_of_json, warn_of_text};
+use crate::output::printable;
 use crate::sizes::{load_both, sizes_line};
 use crate::unlike_sizes::warn_of_sizes;
 use d2m::bvh::{MeshTree, Posed, QueryError, Solid};
@@ -54,7 +55,10 @@ impl PosedBodies {
     /// The names of the bodies, with their sizes.
     pub(crate) fn lines(&self, line: &mut dyn FnMut(&str, String)) {
         for (label, body) in ["A", "B"].into_iter().zip(&self.both) {
-            line(label, format!("{} · {} triangles", body.name, body.tree.mesh().triangle_count()));
+            line(
+                label,
+                format!("{} · {} triangles", printable(&body.name), body.tree.mesh().triangle_count()),
+            );
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::arguments::FurtherArguments;
 use crate::engine::{Answer, Further, Pair};
-use crate::output::short;
+use crate::output::{printable, short};
 use d2m::bvh::{Solid, StartState, TimeOfContact, Window};
 use d2m_io::{AnswerLines, answer_lines, contact_fields};
 pub(crate) use d2m_io::{
@@ -86,7 +86,7 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
 /// The names of the bodies, with their sizes.
 pub(crate) fn body_lines(line: &mut dyn FnMut(&str, String), pair: &Pair) {
     for (label, body) in [("A", &pair.a), ("B", &pair.b)] {
-        line(label, format!("{} · {} triangles", body.name, count(body.mesh().triangle_count())));
+        line(label, format!("{} · {} triangles", printable(&body.name), count(body.mesh().triangle_count())));
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::arguments::{SizeArgument, SizeArguments};
 use crate::failure::Failure;
 use crate::load::{Loaded, load_with};
-use crate::output::digits;
+use crate::output::{digits, printable};
 use crate::travel::Travel;
 use d2m_io::{ReadOptions, Unit};
 use glam::DVec3;
@@ -79,17 +79,19 @@ pub(crate) fn scene_sizes_line(bodies: &[(&str, f64, Travel)]) -> String {
     else {
         return String::new();
     };
+    let [smallest, largest, farthest, most_turned] =
+        [small, large, far, turned].map(|body| printable(body.0));
     format!(
         "  {:<12}from {} ({}) to {} ({}) across · moves up to {} ({}) · turns up to {}° ({})\n",
         "sizes",
         digits(small.1),
-        small.0,
+        smallest,
         digits(large.1),
-        large.0,
+        largest,
         digits(far.2.way),
-        far.0,
+        farthest,
         digits(turned.2.turn.to_degrees()),
-        turned.0,
+        most_turned,
     )
 }
 

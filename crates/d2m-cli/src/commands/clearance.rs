@@ -6,8 +6,7 @@ use crate::arguments::ClearanceArguments;
 use crate::engine::{ClearanceAnswer, MIN_SEPARATION, Pair, number};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
-use crate::output::print_answer;
-use crate::output::short;
+use crate::output::{print_answer, printable, short};
 use crate::report::{body_lines, duration, feature_sentence, microseconds, vector};
 use crate::scene::{Scene, SceneBody};
 use crate::sizes::sizes_line;
@@ -87,7 +86,8 @@ fn run_scene(arguments: &ClearanceArguments, accuracy: f64) -> Result<Outcome, F
         let line = |found: &PairClearance| {
             let Clearance { lower, upper, time, .. } = found.clearance;
             let [lower, upper, time] = [lower, upper, time].map(short);
-            format!("{} \u{2013} {}: [{lower}, {upper}] at t = {time}\n", name(found.a), name(found.b))
+            let [a, b] = [found.a, found.b].map(|id| printable(name(id)));
+            format!("{a} \u{2013} {b}: [{lower}, {upper}] at t = {time}\n")
         };
         let mut text = match &nearest {
             None => "CLEARANCE: no pair is of interest\n".to_owned(),

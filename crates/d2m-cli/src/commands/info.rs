@@ -3,8 +3,7 @@
 use crate::arguments::InfoArguments;
 use crate::failure::Failure;
 use crate::load::Loaded;
-use crate::output::short;
-use crate::output::{Output, print, require_distinct};
+use crate::output::{Output, print, printable, require_distinct, short};
 use crate::sizes::load_one;
 use d2m::bvh::{EnclosingSphere, MeshParts, Validation};
 use d2m::shapes::{COMMON, SHAPES};
@@ -33,7 +32,7 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     // A large mesh takes a second for each.
     let (validation, parts) = rayon::join(|| Validation::new(body.mesh()), || MeshParts::new(body.mesh()));
     if let Some(obj) = obj {
-        obj.write(&format!("# {source}\n{}", obj_text(body.mesh())))?;
+        obj.write(&format!("# {}\n{}", printable(source), obj_text(body.mesh())))?;
     }
     if let Some(ply) = ply {
         ply.write_bytes(&ply_bytes(body.mesh()))?;
@@ -56,7 +55,7 @@ const VOLUME_ROUNDING: f64 = 1e-9;
 
 fn mesh_text(body: &Loaded, validation: &Validation, parts: &MeshParts) -> String {
     let sphere = EnclosingSphere::of_mesh(body.mesh());
-    let mut text = format!("{}\n", body.name);
+    let mut text = format!("{}\n", printable(&body.name));
     let mut line = |label: &str, value: String| {
         let _ = writeln!(text, "  {label:<12}{value}"); // writing to a string cannot fail
     };

@@ -8,7 +8,7 @@ use crate::inputs;
 use crate::let_go::{Beginning, LetGo, at_start, exception};
 use crate::load::named;
 use crate::outcome::Outcome;
-use crate::output::{Output, digits, note, print, short};
+use crate::output::{Output, digits, note, print, printable, short};
 use crate::report::{clearance_word, clearance_words, evidence_sentence, vector};
 use crate::robot_path::read_path;
 use crate::robot_scene::RobotSceneFile;
@@ -130,7 +130,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
                 Proof::Verified(steps) => {
                     format!("  verified    yes, by an independent proof of {steps} steps\n")
                 }
-                Proof::Unverified(why) => format!("  verified    no: {why}\n"),
+                Proof::Unverified(why) => format!("  verified    no: {}\n", printable(why)),
             })
     })?;
     let outcome = match &answer {
@@ -298,6 +298,7 @@ fn json(
 /// How near a free path comes, for a person.
 fn nearness(PathClearance { lower, upper, time, a, b, status, .. }: &PathClearance) -> String {
     let (enclosure, time) = (clearance_words([*lower, *upper], *status), short(*time));
+    let [a, b] = [a, b].map(|name| printable(name));
     format!("  clearance   {enclosure}, {a} \u{2013} {b} at t = {time}\n")
 }
 
@@ -316,24 +317,27 @@ fn text(answer: &PathAnswer, bodies: &PathBodies<'_>, let_go: &[&LetGo]) -> Stri
     let mut text = match answer {
         PathAnswer::Free { .. } => format!("FREE: certified, no contact from {start} to {end}{kept}\n"),
         PathAnswer::Undecided { free_until, a, b, .. } => format!(
-            "UNDECIDED: certified free from {start} until {}{kept}; then {a} \u{2013} {b} needs more time\n",
-            short(*free_until)
+            "UNDECIDED: certified free from {start} until {}{kept}; then {} \u{2013} {} needs more time\n",
+            short(*free_until),
+            printable(a),
+            printable(b)
         ),
         PathAnswer::Contact(found) => {
             let time = short(found.contact.time_lo);
-            format!("CONTACT of {} \u{2013} {} at t = {time}\n", found.a, found.b)
+            format!("CONTACT of {} \u{2013} {} at t = {time}\n", printable(&found.a), printable(&found.b))
         }
     };
     if let PathAnswer::Contact(found) = answer {
         let contact = &found.contact;
+        let [a, b] = [&found.a, &found.b].map(|name| printable(name));
         let separation = bodies.pair_options(found.bodies).min_separation;
         // Writing to a string cannot fail.
         let _ = writeln!(text, "  time        [{}, {}]", short(contact.time_lo), short(contact.time_hi));
         let _ = writeln!(text, "  certified   free from {start} until the first of these times{kept}");
         let _ = writeln!(text, "  evidence    {}", evidence_sentence(contact, separation));
         let _ = writeln!(text, "  separation  {:.4e} left then", contact.separation);
-        let _ = writeln!(text, "  point       {} on {}", vector(contact.point_a), found.a);
-        let _ = writeln!(text, "  normal      {} from {} to {}", vector(contact.normal), found.a, found.b);
+        let _ = writeln!(text, "  point       {} on {a}", vector(contact.point_a));
+        let _ = writeln!(text, "  normal      {} from {a} to {b}", vector(contact.normal));
     }
     for pair in let_go {
         let _ = writeln!(text, "  left        {}", pair.words());

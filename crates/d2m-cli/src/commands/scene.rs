@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::let_go::{Beginning, LetGo, at_start, exception};
 use crate::load::named;
 use crate::outcome::Outcome;
-use crate::output::{print_answer, progress_bar, short};
+use crate::output::{print_answer, printable, progress_bar, short};
 use crate::report::{feature_field, start_in_json, start_word, vector};
 use crate::scene::{Scene, SceneBody};
 use crate::verification::{Bodies, Proof, joined};
@@ -185,6 +185,7 @@ fn pairs(count: usize) -> String {
 /// The answer for a person.
 fn text(window: Window, names: &[&str], rows: &[Row], let_go: &[&LetGo]) -> String {
     let [start, end] = [window.start(), window.end()].map(short);
+    let names: Vec<_> = names.iter().map(|name| printable(name)).collect();
     let contacts = rows.iter().filter(|row| row.answer.contact().is_some()).count();
     let bodies = format!("{} bodies from {start} to {end}{}\n", names.len(), exception(let_go));
     let mut text = match (contacts, rows.len() - contacts) {
@@ -194,7 +195,7 @@ fn text(window: Window, names: &[&str], rows: &[Row], let_go: &[&LetGo]) -> Stri
         (_, undecided) => format!("CONTACT of {}, and {undecided} undecided, of {bodies}", pairs(contacts)),
     };
     for row in rows {
-        let [a, b] = row.bodies.map(|body| names[body]);
+        let [a, b] = row.bodies.map(|body| &names[body]);
         let pair = format!("{a} \u{2013} {b}");
         // Writing to a string cannot fail.
         let _ = match &row.answer {

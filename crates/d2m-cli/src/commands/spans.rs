@@ -6,8 +6,7 @@ use crate::arguments::{PairArguments, SpansArguments};
 use crate::engine::number;
 use crate::failure::Failure;
 use crate::outcome::Outcome;
-use crate::output::print_answer;
-use crate::output::short;
+use crate::output::{print_answer, printable, short};
 use crate::scene::{Scene, SceneBody};
 use crate::sizes::sizes_line;
 use crate::verification::{Bodies, Promise, Proof, joined};
@@ -74,8 +73,9 @@ fn run_scene(asked: &PairArguments, resolution: Option<f64>) -> Result<Outcome, 
         format!("{object}\n")
     } else {
         let mut text = to_text(&all);
+        let shown = |id: BodyId| printable(name(id));
         for pair in &pairs {
-            let _ = write!(text, "{} \u{2013} {}: {}", name(pair.a), name(pair.b), to_text(&pair.spans));
+            let _ = write!(text, "{} \u{2013} {}: {}", shown(pair.a), shown(pair.b), to_text(&pair.spans));
         }
         if let Some(proof) = proof {
             let _ = writeln!(text, "  verified    {}", proof.sentence());
