@@ -60,7 +60,9 @@ const MEAN: f64 = 0.25;
 pub(super) mod tests {
     use super::*;
     use crate::body::velocity::Velocity;
-    use crate::contact::{ContactPoint, SolverBody};
+    use crate::contact::point::Material;
+    use crate::contact::{ContactPoint, SolverBody, tangents, upright};
+    use crate::drawn::vector;
     use glam::{DMat3, DVec3};
 
     const ACCURACY: Accuracy = Accuracy {
@@ -84,7 +86,7 @@ pub(super) mod tests {
         bodies.push(body(0.0, 0.0));
         let contact = |upper: usize| {
             let lower = upper.checked_sub(1).unwrap_or(count);
-            crate::contact::point::upright([lower, upper])
+            upright([lower, upper])
         };
         let contacts: Vec<_> = (0..count).map(contact).collect();
         // Taken for a crowd, and for no row, which is not swept.
@@ -104,6 +106,43 @@ pub(super) mod tests {
         assert!(3.0 * conjugate < steady, "{conjugate} {steady}");
     }
 
+    /// So many rows of so many bodies, each on two of the row below, with two rough contacts each that are askew; the lowest stand on the ground.
+    fn wall(rows: usize, columns: usize) -> System {
+        let (bodies, ground) = (column(rows * columns, 0.01).bodies, rows * columns);
+        let state = &mut 5;
+        let mut askew = |lower: usize, upper: usize| {
+            let normal = (DVec3::Y + 0.5 * vector(state)).normalize();
+            ContactPoint {
+                normal,
+                tangents: tangents(normal),
+                arm_a: 0.5 * DVec3::Y + 0.4 * vector(state),
+                arm_b: -0.5 * DVec3::Y + 0.4 * vector(state),
+                material: Material { friction: 0.5, restitution: 0.0 },
+                ..upright([lower, upper])
+            }
+        };
+        let mut contacts = Vec::new();
+        for body in 0..ground {
+            let below = |beside: usize| match body.checked_sub(columns) {
+                Some(lower) => lower - lower % columns + (lower + beside) % columns,
+                None => ground,
+            };
+            contacts.extend([0, 0, 1, 1].map(|beside| askew(below(beside), body)));
+        }
+        contacts.sort_by_key(|contact| (contact.a, contact.b));
+        System { is_row: false, ..System::new(bodies, &contacts, |body| body) }
+    }
+
+    /// A way that sweeps go on along against what they change themselves leads off.
+    #[test]
+    fn ways_end_where_sweeps_lead_back() {
+        let mut wall = wall(24, 24);
+        let targets = vec![0.0; wall.blocks.len()];
+        let accuracy = Accuracy { relative: 0.0, precision: 1e-9, ..ACCURACY };
+        let left = wall.sweep_until(&targets, accuracy, Pace::Conjugate, 192);
+        assert!(left < 2e-3, "{left}");
+    }
+
     /// A crowd that moves may leave more at one place, if little is left of all; a few bodies may not, unless they are of a crowd.
     #[test]
     fn single_blocks_of_crowds_may_be_further_from_their_law() {
@@ -120,7 +159,7 @@ pub(super) mod tests {
         // The lowest contact closes at 10, which ends a flight of this length unless it has that much room.
         let heap = Accuracy { company: Company::Heap, ..ACCURACY };
         for (distance, lasts) in [(0.0, false), (1.0, false), (20.0, true)] {
-            let contact = ContactPoint { distance, ..crate::contact::point::upright([64, 0]) };
+            let contact = ContactPoint { distance, ..upright([64, 0]) };
             let crowd = column(64, 10.0).for_flights(&[contact], &[0.0], 1.0);
             let off = (40.0 * enough, 0.2 * enough);
             assert!(is_swept(&crowd, off, ACCURACY));

@@ -70,6 +70,13 @@ pub(super) struct Left {
     pub(super) has_room: bool,
 }
 
+/// What sweeps have changed, as energy: the sum of the squares of the impulses' changes, and that of their products with the way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Change {
+    pub(super) square: f64,
+    pub(super) along: f64,
+}
+
 /// The consecutive blocks of one pair of bodies.
 #[derive(Clone, Debug)]
 pub(super) struct OfPair {
@@ -209,17 +216,18 @@ impl<S: Side> Group<S> {
         core::mem::swap(&mut self.way, &mut self.begun);
     }
 
-    /// Takes what sweeps have changed in place of what they began with; the sum of its squares, each as energy.
+    /// Takes what sweeps have changed in place of what they began with.
     #[inline(always)]
-    pub(super) fn changed<D: Doubles>(&mut self) -> f64 {
-        let mut sum = D::splat(0.0);
+    pub(super) fn changed<D: Doubles>(&mut self) -> Change {
+        let (mut square, mut along) = (D::splat(0.0), D::splat(0.0));
         for k in 0..self.rows.len() {
             let change = minus(&load::<D>(&self.impulses[k]), &load(&self.begun[k]));
-            let [n, t, u] = change;
-            sum = sum + D::load(&self.rows[k].asked.scale) * (n * n + t * t + u * u);
+            let scale = D::load(&self.rows[k].asked.scale);
+            square = square + scale * dot(&change, &change);
+            along = along + scale * dot(&change, &load(&self.way[k]));
             self.begun[k] = store(&change);
         }
-        total(sum)
+        Change { square: total(square), along: total(along) }
     }
 
     /// Goes on along a part of the way, and adds to that part what sweeps have changed.
@@ -260,6 +268,11 @@ fn minus<D: Doubles>(a: &[D; 3], b: &[D; 3]) -> [D; 3] {
 #[inline(always)]
 fn plus<D: Doubles>(a: &[D; 3], b: &[D; 3]) -> [D; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+#[inline(always)]
+fn dot<D: Doubles>(a: &[D; 3], b: &[D; 3]) -> D {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The sum of all lanes.

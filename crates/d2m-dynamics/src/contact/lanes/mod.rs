@@ -53,7 +53,8 @@ pub(super) struct Off {
 
 /// The way on which sweeps go on: nonsmooth nonlinear conjugate gradients (Silcowitz-Hansen, Niebe and Erleben 2010). What two sweeps, forth and
 /// back, change is the direction of descent; after it the impulses go on along the way of before, the less the more the change has
-/// shrunk, and begin a new way where it has grown. A crowd takes about half of the sweeps.
+/// shrunk. A new way begins where the change points against the way (O'Donoghue and Candès 2015): where the change has merely grown, as it
+/// does every few sweeps of a large pile, the way is still a good one. A crowd takes about a third of the sweeps.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Descent {
     /// The sum of the squares of what the last two sweeps changed, each as energy.
@@ -144,13 +145,14 @@ impl Wide {
 impl Descent {
     #[inline(always)]
     fn go_on<D: Doubles>(&mut self, wide: &mut Wide) {
-        let square = wide.cones.changed::<D>() + wide.lines.changed::<D>();
+        let (cones, lines) = (wide.cones.changed::<D>(), wide.lines.changed::<D>());
+        let (square, along) = (cones.square + lines.square, cones.along + lines.along);
         let part = square / core::mem::replace(&mut self.square, square);
-        if part.is_nan() || part > 1.0 {
+        if part.is_nan() || self.has_way && along < 0.0 {
             self.has_way = false;
         } else if core::mem::replace(&mut self.has_way, true) {
-            wide.cones.go_on::<D>(&mut wide.velocities, part);
-            wide.lines.go_on::<D>(&mut wide.velocities, part);
+            wide.cones.go_on::<D>(&mut wide.velocities, part.min(1.0));
+            wide.lines.go_on::<D>(&mut wide.velocities, part.min(1.0));
         } else {
             wide.cones.begin_way();
             wide.lines.begin_way();
