@@ -1,5 +1,8 @@
 use crate::QueryError;
 
+/// The part of a window that spans and partings are told to, if none is given: a frame in a million.
+const RESOLUTION: f64 = 1e-6;
+
 /// A closed span of time [t0, t1], both ends finite, t0 ≤ t1.
 ///
 /// ```
@@ -55,7 +58,7 @@ impl Window {
     /// assert_eq!(window.default_resolution(), 2e-6);
     /// ```
     pub const fn default_resolution(self) -> f64 {
-        1e-6 * self.length()
+        RESOLUTION * self.length()
     }
 
     /// Is `time` inside, ends included?
