@@ -1,7 +1,7 @@
 //! Projected Gauss–Seidel: block after block, each with the velocities that the ones before left.
 
 use super::accuracy::{Accuracy, Company};
-use super::lanes::{Descent, Off, Wide};
+use super::lanes::{Descent, Ends, Off, Wide};
 use super::system::System;
 
 /// How sweeps follow each other.
@@ -20,7 +20,8 @@ impl System {
         wide.fill(self.numbers(targets));
         let mut off = wide.sweep(0, None);
         let (mut best, mut kept) = (off.most, wide.kept());
-        let mut descent = (pace == Pace::Conjugate).then(Descent::default);
+        let ends = if self.mean_speed() <= accuracy.slow { Ends::Grown } else { Ends::Back };
+        let mut descent = (pace == Pace::Conjugate).then(|| Descent::new(ends));
         let mut done = 0;
         while !self.is_swept(off, accuracy) && done < most {
             off = wide.sweep(BETWEEN / 2, descent.as_mut());
@@ -137,6 +138,7 @@ pub(super) mod tests {
     #[test]
     fn ways_end_where_sweeps_lead_back() {
         let mut wall = wall(24, 24);
+        wall.bodies.iter_mut().for_each(|body| body.velocity.linear.x = 10.0);
         let targets = vec![0.0; wall.blocks.len()];
         let accuracy = Accuracy { relative: 0.0, precision: 1e-9, ..ACCURACY };
         let left = wall.sweep_until(&targets, accuracy, Pace::Conjugate, 192);

@@ -51,12 +51,22 @@ pub(super) struct Off {
     pub(super) has_room: bool,
 }
 
+/// Where sweeps that go on along a way begin a new one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ends {
+    /// As soon as what two sweeps change has grown: what is at rest, or begins to move, is solved best so.
+    Grown,
+    /// Where that points against the way (O'Donoghue and Candès 2015): of a large pile that moves it has grown every few sweeps, and the way is
+    /// still a good one.
+    Back,
+}
+
 /// The way on which sweeps go on: nonsmooth nonlinear conjugate gradients (Silcowitz-Hansen, Niebe and Erleben 2010). What two sweeps, forth and
 /// back, change is the direction of descent; after it the impulses go on along the way of before, the less the more the change has
-/// shrunk. A new way begins where the change points against the way (O'Donoghue and Candès 2015): where the change has merely grown, as it
-/// does every few sweeps of a large pile, the way is still a good one. A crowd takes about a third of the sweeps.
-#[derive(Clone, Copy, Debug, Default)]
+/// shrunk, and begin a new way where it [`Ends`]. A crowd takes about a third of the sweeps.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Descent {
+    ends: Ends,
     /// The sum of the squares of what the last two sweeps changed, each as energy.
     square: f64,
     /// Is there a way of before?
@@ -143,12 +153,23 @@ impl Wide {
 }
 
 impl Descent {
+    pub(super) fn new(ends: Ends) -> Self {
+        Self { ends, square: 0.0, has_way: false }
+    }
+
+    fn ends_way(&self, part: f64, along: f64) -> bool {
+        match self.ends {
+            Ends::Grown => part > 1.0,
+            Ends::Back => self.has_way && along < 0.0,
+        }
+    }
+
     #[inline(always)]
     fn go_on<D: Doubles>(&mut self, wide: &mut Wide) {
         let (cones, lines) = (wide.cones.changed::<D>(), wide.lines.changed::<D>());
         let (square, along) = (cones.square + lines.square, cones.along + lines.along);
         let part = square / core::mem::replace(&mut self.square, square);
-        if part.is_nan() || self.has_way && along < 0.0 {
+        if part.is_nan() || self.ends_way(part, along) {
             self.has_way = false;
         } else if core::mem::replace(&mut self.has_way, true) {
             wide.cones.go_on::<D>(&mut wide.velocities, part.min(1.0));

@@ -4,7 +4,7 @@ use super::super::block::Block;
 use super::super::law::Law;
 use super::super::solver_body::SolverBody;
 use super::super::system::System;
-use super::{Descent, Round, Wide};
+use super::{Descent, Ends, Round, Wide};
 use crate::body::velocity::Velocity;
 use crate::contact::point::{JointRow, Material, upright};
 use crate::contact::{ContactPoint, tangents};
@@ -136,7 +136,7 @@ fn velocities_follow_from_impulses() {
     let free = system.velocities();
     let mut wide = Wide::new(&system.bodies, &system.blocks);
     wide.fill(system.numbers(&targets));
-    let mut descent = Descent::default();
+    let mut descent = Descent::new(Ends::Back);
     let mut ways = 0;
     for _ in 0..8 {
         wide.sweep(1, Some(&mut descent));
