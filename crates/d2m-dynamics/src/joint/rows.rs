@@ -24,8 +24,9 @@ pub(crate) struct Joined {
     axes: [DVec3; 2],
     /// The turn of the second body's axes against those of the first one.
     turn: DQuat,
-    /// The value at the last look: angles go on beyond half a turn.
+    /// The value at the last look, and when that was: angles go on beyond half a turn.
     value: f64,
+    looked: f64,
     /// Was it taken out, or one of its bodies?
     is_gone: bool,
 }
@@ -74,6 +75,7 @@ impl Joined {
             axes: [own(a, axis), own(b, axis)],
             turn: a.orientation.conjugate() * b.orientation,
             value: 0.0,
+            looked: a.time.max(b.time),
             is_gone: false,
         })
     }
@@ -133,7 +135,8 @@ impl Joined {
         } else if !(self.axes.iter().all(|axis| axis.is_normalized()) && self.turn.is_normalized()) {
             Some(("axes", format!("{:?}, {}", self.axes, shown_turn(self.turn))))
         } else {
-            (!is_small(DVec3::splat(self.value))).then(|| ("value", shown([self.value])))
+            (!is_small(DVec3::new(self.value, self.looked, 0.0)))
+                .then(|| ("value and its time", shown([self.value, self.looked])))
         };
         fault.map_or(Ok(()), |(name, value)| Err(unusable([a, b], name, value)))
     }
@@ -198,7 +201,8 @@ impl Joined {
             JointKind::Revolute => {
                 let off = rotation_vector(qb * (qa * self.turn).conjugate());
                 let angle = off.dot(qa * self.axes[0]);
-                let turns = ((self.value - angle) / core::f64::consts::TAU).round();
+                let about = self.value + self.turned(bodies);
+                let turns = ((about - angle) / core::f64::consts::TAU).round();
                 angle + turns * core::f64::consts::TAU
             }
             JointKind::Prismatic => {
@@ -208,12 +212,23 @@ impl Joined {
         }
     }
 
-    /// Remembers the value, of which angles are known up to full turns.
+    /// How far the second body has turned against the first one about the axis in their present flights, since the last look.
+    fn turned(&self, [a, b]: [&RigidBody; 2]) -> f64 {
+        let turned = |body: &RigidBody| {
+            let since = body.flight.reference_time().max(self.looked);
+            body.present_velocity().angular * (body.time - since).max(0.0)
+        };
+        (turned(b) - turned(a)).dot(a.orientation * self.axes[0])
+    }
+
+    /// Remembers the value, where flights end: poses say it up to full turns, and flights how many of these there were.
     pub(crate) fn look(&mut self, bodies: &[RigidBody]) {
         if self.is_gone {
             return;
         }
-        self.value = self.value(self.bodies.map(|i| &bodies[i]));
+        let pair = self.bodies.map(|i| &bodies[i]);
+        self.value = self.value(pair);
+        self.looked = pair[0].time.max(pair[1].time);
     }
 
     /// How far the bodies are from what the joint keeps, along each of its equations, in these poses.

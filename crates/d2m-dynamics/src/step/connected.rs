@@ -119,18 +119,19 @@ impl Step<'_> {
     }
 
     /// Adds the rows of the joints of some bodies; the bodies that these connect with the group and that are none of it yet.
-    fn admit_joints(&self, group: &mut Group, of: &[usize], time: f64, occasion: Occasion) -> Vec<usize> {
-        let sim = &*self.sim;
+    fn admit_joints(&mut self, group: &mut Group, of: &[usize], time: f64, occasion: Occasion) -> Vec<usize> {
+        let sim = &mut *self.sim;
         let end = if let Occasion::Plan { until } = occasion { until } else { self.end };
         let (step, passed) = (sim.options.step, time - self.start);
         let ahead = Ahead { length: end - time, step, forces: !occasion.is_event(), passed, spent: 0.0 };
         let mut next = Vec::new();
-        for (number, joined) in sim.joints.iter().enumerate() {
+        for (number, joined) in sim.joints.iter_mut().enumerate() {
             let Err(place) = group.joints.binary_search(&number) else { continue };
             if !of.iter().any(|&i| joined.has(i)) {
                 continue;
             }
             group.joints.insert(place, number);
+            joined.look(&sim.bodies);
             let ahead = Ahead { spent: self.spent.get(&number).copied().unwrap_or_default(), ..ahead };
             group.contacts.extend(joined.rows(number, joined.bodies.map(|i| &sim.bodies[i]), ahead));
             let is_new =
