@@ -92,8 +92,15 @@ impl Problem<'_> {
         let splits = if self.has_like_joints() { Splits::Jointed } else { Splits::Own };
         let horizon = |s: &Cow<'_, RigidBody>| s.horizon_within(end, self.options.step, splits);
         let mut end = if is_whole { end } else { moved().map(horizon).fold(end, f64::min) };
-        let longest = end;
         let mut tried = self.attempt(now, end, Room::Kept);
+        while !self.keeps_energy_of_turning(&tried) {
+            let half = now + 0.5 * (end - now);
+            if half - now < self.options.step / MOST_FLIGHTS {
+                break;
+            }
+            (end, tried) = (half, self.attempt(now, half, Room::Kept));
+        }
+        let longest = end;
         if let Some(stopped) = self.stopped(&tried, [now, end]) {
             return stopped;
         }

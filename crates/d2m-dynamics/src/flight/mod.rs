@@ -6,3 +6,4 @@ pub(crate) mod length;
 pub(crate) mod path;
 pub(crate) mod problem;
 pub(crate) mod solved_body;
+pub(crate) mod turning_energy;

@@ -58,10 +58,14 @@ impl Problem<'_> {
         numbers
     }
 
+    /// Do joints or locks hold any of the bodies?
+    pub(crate) fn has_rows(&self) -> bool {
+        self.contacts.iter().any(|contact| contact.row.is_some())
+    }
+
     /// Do joints hold bodies of like masses? Light ones between heavy ones are pulled to and fro faster than they turn.
     pub(crate) fn has_like_joints(&self) -> bool {
-        self.contacts.iter().any(|contact| contact.row.is_some())
-            && are_alike(self.states.iter().map(|s| &**s))
+        self.has_rows() && are_alike(self.states.iter().map(|s| &**s))
     }
 
     /// A gap in a step.

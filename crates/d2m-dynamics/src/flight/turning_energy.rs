@@ -1,0 +1,83 @@
+//! What energy bodies turn with in flights that impulses have them begin.
+//!
+//! A flight has the angular momentum of its body in its middle, where the body is turned by half of the flight. Of a thin body whose momentum is
+//! mostly across its long axis a small error of where that axis points then is a large spin about it, which turns the body elsewhere still: nothing
+//! is found but for flights so short that the axis hardly moves. How short is known of a body that nothing meets
+//! ([`RigidBody::horizon_within`]), and of others only with the impulses that are solved for.
+
+use crate::body::momenta::Momenta;
+use crate::body::rigid_body::RigidBody;
+use crate::contact::add;
+use crate::flight::attempt::Attempt;
+use crate::flight::problem::Problem;
+use crate::flight::solved_body::moves;
+use glam::{DQuat, DVec3};
+
+/// The part of the energy of turning that a flight may have more or less than the momenta that it begins with: what is found of its middle is off by
+/// 2⁻¹¹ of it in flights as short as those of bodies that nothing meets, and by any factor where nothing is found.
+const MOST_OFF: f64 = 1.0 / 128.0;
+
+impl Problem<'_> {
+    /// Does each body turn with the energy that its momenta have at the start of its flight, and have at its end? What joints hold does not turn freely.
+    pub(crate) fn keeps_energy_of_turning(&self, attempt: &Attempt) -> bool {
+        self.has_rows() || self.turns(attempt).iter().all(|turn| turn.is_flown() && turn.ends_as_it_begins())
+    }
+
+    /// Does each body end its flight with as much energy of turning as it has at the start, with whatever else its velocity leads to?
+    pub(crate) fn ends_with_energy_of_turning(&self, attempt: &Attempt) -> bool {
+        self.has_rows() || self.turns(attempt).iter().all(Turn::ends_as_it_begins)
+    }
+
+    fn turns(&self, attempt: &Attempt) -> Vec<Turn<'_>> {
+        let mut added = vec![Momenta::default(); self.states.len()];
+        add(&attempt.found.contacts, &mut added, |body| self.place(body));
+        let length = attempt.span.remaining;
+        let bodies = self.states.iter().zip(&attempt.system.bodies).zip(&added);
+        let moved = bodies.filter(|((state, _), _)| moves(state));
+        moved
+            .map(|((state, body), added)| {
+                let middle = state.torque * state.lead.unwrap_or(0.5 * length);
+                Turn {
+                    state,
+                    momentum: state.angular_momentum + middle + added.angular,
+                    spin: body.velocity.angular,
+                    length,
+                    // Of bodies at rest the momentum is what rounding leaves of impulses.
+                    least: state.mass * self.speed() * self.speed(),
+                }
+            })
+            .collect()
+    }
+}
+
+/// How a body turns in a flight that begins with an angular momentum.
+struct Turn<'s> {
+    state: &'s RigidBody,
+    momentum: DVec3,
+    spin: DVec3,
+    length: f64,
+    /// Less than that counts for nothing.
+    least: f64,
+}
+
+impl Turn<'_> {
+    /// Twice the energy of the momentum with the body as it stands.
+    fn of_momentum(&self, orientation: DQuat) -> f64 {
+        self.momentum.dot(self.state.inverse_inertia_at(orientation) * self.momentum)
+    }
+
+    fn is_due(&self, energy: f64) -> bool {
+        let due = self.of_momentum(self.state.orientation);
+        (energy - due).abs() <= MOST_OFF * due + self.least
+    }
+
+    /// Has the flight the energy of the momentum? A spin about the axes of the body is the same all through it.
+    fn is_flown(&self) -> bool {
+        let own = self.state.orientation.conjugate() * self.spin;
+        self.is_due(own.dot(self.state.inertia * own))
+    }
+
+    fn ends_as_it_begins(&self) -> bool {
+        self.is_due(self.of_momentum(self.state.turned(self.spin, self.length)))
+    }
+}
