@@ -10,6 +10,7 @@ mod commands;
 mod engine;
 mod failure;
 mod inputs;
+mod joint_turns;
 mod let_go;
 mod load;
 mod mesh_library;

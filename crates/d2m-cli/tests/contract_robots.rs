@@ -141,6 +141,42 @@ fn joints_that_turn_far_are_named_before_the_search() {
     }
 }
 
+/// Also of joints that the path does not name, and of turns between its points.
+#[test]
+fn joints_that_follow_and_that_come_back_are_named_too() {
+    let folder = Folder::new("contract-turns");
+    let arm = r#"<robot name="arm"><link name="base"><collision><origin xyz="0 0 9"/><geometry><box size="1 1 1"/></geometry></collision></link>
+      <link name="hand"><collision><geometry><box size="1 0.1 0.1"/></geometry></collision></link><link name="wheel"/>
+      <joint name="turn" type="continuous"><parent link="base"/><child link="hand"/><axis xyz="0 0 1"/></joint>
+      <joint name="roll" type="continuous"><parent link="base"/><child link="wheel"/><mimic joint="turn" multiplier="-100"/></joint></robot>"#;
+    let robot = folder.file("arm.urdf", arm);
+    let said = |points: &str| {
+        let path = folder.file("path.json", &format!(r#"{{"joint_names": ["turn"], "points": [{points}]}}"#));
+        let run = d2m(&["robot", &robot, "--path", &path]);
+        let lines = stderr(&run);
+        let turns =
+            lines.lines().filter_map(|line| line.split_once("joint \"")).map(|(_, text)| text.to_owned());
+        turns.collect::<Vec<_>>()
+    };
+    let words = "times on the path; angles are radians";
+    let straight = r#"{"positions": [0], "time_from_start": 0}, {"positions": [1], "time_from_start": 1}"#;
+    assert_eq!(said(straight), [format!("roll\" turns 15.92 {words}")]);
+    // 1000·t(1 − t)(1 − 2t): twice from −500/√27 to 500/√27, in all 2000/√27 radians.
+    let curved = r#"{"positions": [0], "velocities": [1000], "time_from_start": 0},
+        {"positions": [0], "velocities": [1000], "time_from_start": 1}"#;
+    let found = said(curved);
+    let turns: Vec<f64> = found.iter().map(|text| text.split(' ').nth(2).unwrap().parse().unwrap()).collect();
+    let expected = 2000.0 / 27.0_f64.sqrt() / std::f64::consts::TAU;
+    assert!(
+        found.len() == 2 && found[0].starts_with("turn\"") && found[1].starts_with("roll\""),
+        "{found:?}"
+    );
+    assert!(
+        (turns[0] / expected - 1.0).abs() < 0.01 && (turns[1] / expected - 100.0).abs() < 1.0,
+        "{found:?}"
+    );
+}
+
 /// Motions of every JSON form, splines among them, wherever a motion is read.
 #[test]
 fn splines_are_motions() {

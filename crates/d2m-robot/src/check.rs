@@ -41,7 +41,7 @@ impl RobotScene {
     /// A path that makes no sense ([`Trajectory::joint_values`]), joints that the robot does not have, and obstacles whose motions
     /// do not cover the path.
     pub fn check_path(&self, path: &Trajectory) -> Result<PathAnswer, RobotError> {
-        let values = self.robot.all_values(&path.joint_names, path.joint_values()?)?;
+        let values = self.robot.joint_values(path)?;
         let [start, end] = path.times().unwrap_or_default();
         self.check_values(&values, [start, end], Threads::All)
     }
@@ -72,7 +72,7 @@ impl RobotScene {
     /// # Errors
     /// As [`RobotScene::check_path`].
     pub fn limit_warnings(&self, path: &Trajectory) -> Result<Vec<LimitWarning>, RobotError> {
-        let values = self.robot.all_values(&path.joint_names, path.joint_values()?)?;
+        let values = self.robot.joint_values(path)?;
         let points: Vec<f64> = path.points.iter().map(|point| point.time_from_start).collect();
         Ok(self.robot.limit_warnings(&values, &points))
     }

@@ -199,6 +199,14 @@ impl Robot {
         self.joint_by_name.get(name).copied()
     }
 
+    /// The name of a joint.
+    ///
+    /// # Panics
+    /// An index that is no joint.
+    pub fn joint_name(&self, joint: usize) -> &str {
+        &self.joints[joint].name
+    }
+
     /// How a joint moves.
     ///
     /// # Panics

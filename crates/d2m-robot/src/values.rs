@@ -1,13 +1,37 @@
 //! From the joints that a path names to the values of all joints.
 
 use crate::RobotError;
-use crate::{JointType, Mimic, Robot};
+use crate::{JointType, Mimic, Robot, Trajectory};
 use d2m_motion::JointValue;
 
 /// Characters of a list of names in a message at most.
 const LONGEST_LIST: usize = 500;
 
 impl Robot {
+    /// The value of every joint along a path, by their indices: those that it names, those that follow them, and the others at rest.
+    ///
+    /// ```
+    /// # let urdf = r#"<robot name="gripper">
+    /// #   <link name="palm"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    /// #   <link name="left"/><link name="right"/>
+    /// #   <joint name="left" type="prismatic"><parent link="palm"/><child link="left"/><limit lower="0" upper="0.04" velocity="1"/></joint>
+    /// #   <joint name="right" type="prismatic"><parent link="palm"/><child link="right"/><limit lower="-0.04" upper="0" velocity="1"/>
+    /// #     <mimic joint="left" multiplier="-1"/></joint>
+    /// # </robot>"#;
+    /// use d2m_robot::{Robot, RobotOptions, Trajectory, TrajectoryPoint};
+    /// let robot = Robot::parse("gripper.urdf", urdf, &RobotOptions::new())?;
+    /// let points = vec![TrajectoryPoint::new(0.0, vec![0.0]), TrajectoryPoint::new(1.0, vec![0.5])];
+    /// let values = robot.joint_values(&Trajectory::new(vec!["left".into()], points))?;
+    /// assert_eq!((robot.joint_name(1), values[1].value(0.5)), ("right", -0.25));
+    /// # Ok::<(), d2m_robot::RobotError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A path that makes no sense ([`Trajectory::joint_values`]), and joints that the robot does not have.
+    pub fn joint_values(&self, path: &Trajectory) -> Result<Vec<JointValue>, RobotError> {
+        self.all_values(&path.joint_names, path.joint_values()?)
+    }
+
     /// The value of every joint, by their indices: those that are named, those that follow them, and the others at rest.
     ///
     /// # Errors

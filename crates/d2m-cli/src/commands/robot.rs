@@ -5,24 +5,22 @@ use crate::arguments::RobotArguments;
 use crate::engine::{number, threads, time_limit};
 use crate::failure::Failure;
 use crate::inputs;
+use crate::joint_turns::far_turns;
 use crate::let_go::{Beginning, LetGo, at_start, exception};
 use crate::load::named;
 use crate::outcome::Outcome;
-use crate::output::{Output, digits, note, print, printable, short};
+use crate::output::{Output, note, print, printable, short};
 use crate::report::{clearance_word, clearance_words, evidence_sentence, vector};
 use crate::robot_path::read_path;
 use crate::robot_scene::RobotSceneFile;
-use crate::travel::Travel;
 use crate::unlike_sizes::unlike;
 use crate::view::picture_of_path;
 use d2m::bvh::{QueryOptions, StartState, Window};
 use d2m_robot::{
-    JointType, LimitWarning, PathAnswer, PathBodies, PathClearance, PathContact, Robot, RobotOptions,
-    RobotScene, Srdf, Trajectory,
+    LimitWarning, PathAnswer, PathBodies, PathClearance, PathContact, Robot, RobotOptions, RobotScene, Srdf,
 };
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde_json::{Value, json};
-use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -96,7 +94,8 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
             checked.bodies
         ));
     }
-    notes.extend(far_turns(&path, &scene).map(|text| format!("warning: {place}: {text}")));
+    let turns = far_turns(&path, scene.robot()).map_err(fault)?;
+    notes.extend(turns.into_iter().map(|text| format!("warning: {place}: {text}")));
     notes.extend(warnings.iter().map(|warning| format!("warning: {place}: {warning}")));
     let pool = threads(arguments.threads.map_or(0, usize::from))?;
     // Before the search: joints that turn far may be why it takes long.
@@ -152,21 +151,6 @@ fn unlike_sizes(bodies: &PathBodies<'_>, robot: &Robot) -> Vec<String> {
     let Some(&largest) = links.iter().max_by(|x, y| x.1.total_cmp(&y.1)) else { return Vec::new() };
     let texts = others.into_iter().filter_map(|other| unlike(other, largest));
     texts.map(|text| format!("warning: {text} (\"scale\")")).collect()
-}
-
-/// Joints that turn more than once on the path.
-fn far_turns<'p>(path: &'p Trajectory, scene: &'p RobotScene) -> impl Iterator<Item = String> + 'p {
-    let turns = |name: &&String| {
-        let joint = scene.robot().find_joint(name);
-        joint.is_some_and(|joint| scene.robot().joint_type(joint) != JointType::Prismatic)
-    };
-    path.joint_names.iter().enumerate().filter(move |(_, name)| turns(name)).filter_map(|(index, name)| {
-        let positions = path.points.iter().filter_map(|point| point.positions.get(index).copied());
-        let way: f64 = positions.clone().zip(positions.skip(1)).map(|(from, to)| (to - from).abs()).sum();
-        let travel = Travel { way: 0.0, turn: way };
-        let words = "times on the path; angles are radians";
-        travel.turns_more_than_once().then(|| format!("joint {name:?} turns {} {words}", digits(way / TAU)))
-    })
 }
 
 fn options(arguments: &RobotArguments, file: Option<&RobotSceneFile<'_>>) -> Result<QueryOptions, Failure> {
