@@ -33,7 +33,12 @@ fn way(value: &JointValue) -> f64 {
             let share = f64::from(part) / f64::from(parts);
             value.value(ends[0] * (1.0 - share) + ends[1] * share)
         };
-        (0..parts).map(|part| (at(part + 1) - at(part)).abs()).sum::<f64>()
+        let mut before = at(0);
+        let steps = (1..=parts).map(|part| {
+            let after = at(part);
+            (after - core::mem::replace(&mut before, after)).abs()
+        });
+        steps.sum::<f64>()
     });
     ways.sum()
 }

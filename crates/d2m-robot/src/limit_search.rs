@@ -42,6 +42,14 @@ pub(crate) struct Finding {
     pub(crate) is_certain: bool,
 }
 
+/// Was the value looked at where a span begins?
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Start {
+    New,
+    /// As that of the span of which it is the first half.
+    Seen,
+}
+
 /// A value over time, and its limits.
 pub(crate) struct LimitSearch<'a> {
     value: &'a JointValue,
@@ -100,9 +108,11 @@ impl<'a> LimitSearch<'a> {
         let rounding = self.rounding(start, end);
         let (lower, upper) = (self.lower - rounding, self.upper + rounding);
         let mut left = self.most_steps;
-        let mut spans = vec![[start, end]];
-        while let Some([lo, hi]) = spans.pop() {
-            if let Some(beyond) = self.at(Interval::point(lo), lo) {
+        let mut spans = vec![(start, end, Start::New)];
+        while let Some((lo, hi, begins)) = spans.pop() {
+            if begins == Start::New
+                && let Some(beyond) = self.at(Interval::point(lo), lo)
+            {
                 return Some(beyond);
             }
             let over = self.enclose(Interval::new(lo, hi));
@@ -123,8 +133,8 @@ impl<'a> LimitSearch<'a> {
                 continue;
             }
             left -= 1;
-            spans.push([middle, hi]);
-            spans.push([lo, middle]);
+            spans.push((middle, hi, Start::New));
+            spans.push((lo, middle, Start::Seen));
         }
         None
     }
