@@ -28,7 +28,7 @@ pub use point::Material;
 #[cfg(test)]
 pub(crate) use point::upright;
 pub(crate) use point::{ContactPoint, JointRow, add, tangents};
-pub(crate) use rows::{HIT, NEAR, Room, Span, select};
+pub(crate) use rows::{HIT, LAST, NEAR, Room, Span, select};
 pub(crate) use solve::LEFT_OVER;
 pub(crate) use solver_body::SolverBody;
 pub(crate) use system::{Present, System};

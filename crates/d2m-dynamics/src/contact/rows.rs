@@ -37,6 +37,10 @@ const KEPT: f64 = 0.45;
 /// it: what presses would come ever closer to what it moves, while there is room behind.
 const MUCH: f64 = 4.0;
 const LEAST_SHARE: f64 = 0.25;
+/// The part of the gap at which hardly any is left.
+pub(crate) const LAST: f64 = 1.0 / 64.0;
+/// The part of the speeds of points that meet that room for their turn may add where that is so: a 256th of their energy.
+const OF_SPEED: f64 = 1.0 / 16.0;
 /// The part of the gap that a step restores at most where it is missing.
 const RESTORED: f64 = 0.25;
 
@@ -62,7 +66,8 @@ pub(crate) struct Row {
 /// rate ≥ p (5/8 min(g, d) − d)/τ + m τ/2       if room is shared: p = 4 min(g, d) over the greatest of these, from 1/4 to 1
 /// ```
 ///
-/// The first two ask for no more than a gap in a step, or m τ/2 where bodies turn into each other.
+/// The first two ask for no more than a gap in a step, or m τ/2 where what drives turns into others; the second one, where hardly any room is
+/// left, for m τ, with what slips along what turns, up to a part of the speeds there are.
 pub(crate) fn select<'b>(
     found: &[&ContactPoint],
     span: Span,
@@ -94,7 +99,9 @@ pub(crate) fn select<'b>(
         let carried = spins.map(|spin| spin.clamp_length_max(drive));
         let led =
             if led_into(contact, carried, velocity) > 0.0 { 0.5 * tau * bend(contact, carried) } else { 0.0 };
-        let most = led.max(gap / span.step);
+        // And where hardly any room is left, for whatever else turns: flights would end at one half of what there is after the other.
+        let turned = if d < LAST * gap { room_to_turn(contact, spins, &velocity, tau) } else { 0.0 };
+        let most = led.max(turned).max(gap / span.step);
         let target = if span.room == Room::Shared {
             curved - share(contact, widest) / tau
         } else if contact.is_expected {
@@ -104,7 +111,7 @@ pub(crate) fn select<'b>(
         } else {
             let restore = (gap - d).min(RESTORED * gap) / span.step;
             let room = curved - (d - KEPT * gap) / tau;
-            restore.max(room).clamp(0.0, most)
+            restore.max(room).max(turned).clamp(0.0, most)
         };
         rows.push(Row { contact: k, target, pushing: target.min(0.0) });
     }
@@ -115,6 +122,28 @@ pub(crate) fn select<'b>(
 fn bend(contact: &ContactPoint, spins: [DVec3; 2]) -> f64 {
     let of = |spin: DVec3, arm: DVec3| spin.cross(contact.normal).length() * spin.length() * arm.length();
     of(spins[0], contact.arm_a) + of(spins[1], contact.arm_b)
+}
+
+/// The rate at which points part so far that what these spins do to them does not bring them together again in a flight: twice what
+/// makes up for the acceleration, but no more than a part of the speeds at which they move, so that their energy changes by hardly anything. What slips
+/// along a face that turns is known ([`led_into`]), of edges a bound is: their normal turns with both.
+fn room_to_turn(
+    contact: &ContactPoint,
+    spins: [DVec3; 2],
+    velocity: impl Fn(usize) -> Velocity,
+    tau: f64,
+) -> f64 {
+    let [a, b] = [contact.a, contact.b].map(&velocity);
+    let slips = b.of_point(contact.arm_b) - a.of_point(contact.arm_a);
+    let slip = (slips - contact.normal * contact.normal.dot(slips)).length();
+    let [spin_a, spin_b] = spins.map(DVec3::length);
+    let of_edges = match contact.feature {
+        FeaturePair::EdgeEdge { .. } => 2.0 * slip * (spin_a + spin_b),
+        FeaturePair::FaceVertex { .. } | FeaturePair::VertexFace { .. } => 0.0,
+    };
+    let acceleration = (bend(contact, spins) + of_edges).max(led_into(contact, spins, velocity));
+    let speed = spin_a * contact.arm_a.length() + spin_b * contact.arm_b.length() + slip;
+    (tau * acceleration).min(OF_SPEED * speed)
 }
 
 /// The acceleration with which bodies with these spins come closer along the normal while their centers fly straight: as a drum does to what it carries

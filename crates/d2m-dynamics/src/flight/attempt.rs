@@ -5,8 +5,8 @@ use crate::body::rigid_body::RigidBody;
 use crate::body::turning::Pull;
 use crate::body::velocity::Velocity;
 use crate::contact::{
-    Accuracy, Company, ContactPoint, Present, Room, SolverBody, Span, Start, System, add, in_common_turn,
-    select,
+    Accuracy, Company, ContactPoint, LAST, Present, Room, SolverBody, Span, Start, System, add,
+    in_common_turn, select,
 };
 use crate::flight::problem::Problem;
 use crate::flight::solved_body::{body_at, moves, still};
@@ -37,8 +37,6 @@ const JOINT_CORRECTIONS: u32 = 8;
 /// How many times further off than what is not corrected at all corrections are given up, which saves time where they diverge. Under brakes they may come
 /// back from there.
 const FAR_OFF: f64 = 8.0;
-/// The part of the gap at which it does so no longer, and hardly any is left.
-const LAST: f64 = 1.0 / 64.0;
 /// The part of a flight for which contacts with less than that keep some of it.
 const LASTING: f64 = 1.0 / 16.0;
 /// The part of what restores the gap that counts beforehand: where the law is not obeyed, nothing may be restored.
