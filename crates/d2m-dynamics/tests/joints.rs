@@ -517,43 +517,6 @@ fn motors_stop_at_limits_however_strong_they_are() {
     }
 }
 
-/// What turns more than half round in a step is where its flights have turned it: it stops at its limit, and where its motor has it go.
-#[test]
-fn turns_are_counted_however_fast_they_are() {
-    for (spin, step) in [(320.0, 0.01), (1000.0, 0.01), (40.0, 0.1), (4.0, 1.0)] {
-        let mut simulation = Simulation::new(still().with_step(step)).unwrap();
-        let body = bar(&mut simulation, 0.0);
-        let inertia = simulation.mass_properties(body).unwrap().inertia.z_axis.z;
-        simulation.apply_impulse(body, DVec3::ZERO, DVec3::Z * (spin * inertia)).unwrap();
-        let pin = Joint::new(JointKind::Revolute, body, None, DVec3::ZERO).with_limits([-20.0, 20.0]);
-        let pin = simulation.add_joint(&pin).unwrap();
-        let mut segments = Vec::new();
-        while simulation.time() < 40.0 * step {
-            segments.extend(simulation.step().unwrap().segments);
-            let value = simulation.joint_value(pin);
-            assert!(value > -20.0 - 1e-6, "{spin}: {value}");
-        }
-        segments.extend(simulation.finish());
-        let (mut rate, mut turned) = (0.0, 0.0);
-        for segment in &segments {
-            for (_, flight) in segment.changed.iter().filter(|(id, _)| *id == body) {
-                rate = flight.angular_velocity().z;
-            }
-            turned += rate * (segment.end - segment.start);
-        }
-        let value = simulation.joint_value(pin);
-        assert!((turned - 20.0).abs() < 1e-6 && (value + turned).abs() < 1e-6, "{spin}: {value} {turned}");
-    }
-    let mut simulation = Simulation::new(still()).unwrap();
-    let body = bar(&mut simulation, 0.0);
-    let pin = Joint::new(JointKind::Revolute, body, None, DVec3::ZERO);
-    let pin = pin.with_motor(Motor::new(MotorTarget::Position(100.0)));
-    let pin = simulation.add_joint(&pin).unwrap();
-    run(&mut simulation, 1.0);
-    let value = simulation.joint_value(pin);
-    assert!((value - 100.0).abs() < 1e-6 && simulation.angular_velocity(body).length() < 1e-4, "{value}");
-}
-
 /// A bar that a motor holds level in the air falls asleep, and falls once the motor is gone, or weaker than its weight.
 #[test]
 fn what_a_motor_holds_still_sleeps_until_it_lets_go() {

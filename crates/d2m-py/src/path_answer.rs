@@ -154,5 +154,6 @@ pub(crate) fn limit_warning<'py>(py: Python<'py>, found: &LimitWarning) -> PyRes
     dict.set_item("point", found.point)?;
     dict.set_item("value", found.value)?;
     dict.set_item("limit", found.limit)?;
+    dict.set_item("is_certain", found.is_certain)?;
     Ok(dict)
 }

@@ -123,7 +123,8 @@ impl Robot {
     }
 
     /// Where a path leaves the limits of its joints, which are not enforced: a list of dictionaries with "joint", "kind" ("position" or
-    /// "velocity"), "time", "point" (after which it is), "value" and "limit". Arguments as of `check_path`.
+    /// "velocity"), "time", "point" (after which it is), "value", "limit" and "is_certain" (false where the search could not decide; "value" is then
+    /// how far beyond it may be). Arguments as of `check_path`.
     ///
     /// >>> import d2m_ccd
     /// >>> robot = d2m_ccd.Robot(d2m_ccd.EXAMPLE_URDF)

@@ -198,4 +198,5 @@ def test_paths_name_point_joint_and_value(robot: d2m_ccd.Robot) -> None:
             robot.check_path(times, positions)
         assert words in str(caught.value) or "points[1]" in str(caught.value), str(caught.value)
     warning = robot.limit_warnings([0.0, 1.0, 2.0], [[0.0], [0.5], [3.5]])
+    assert all(found["is_certain"] for found in warning)
     assert [(found["kind"], found["point"], found["limit"]) for found in warning] == [("position", 1, 3.0), ("velocity", 1, 1.0)]
