@@ -5,7 +5,6 @@ use crate::body::momenta::Momenta;
 use crate::body::turning::{Pull, extreme_eigenvalues};
 use crate::body::velocity::Velocity;
 use crate::numbers::{Numbers, is_small, unusable_of};
-use crate::pairs::hollow::{bores, cavity};
 use crate::rest::quiet::Quiet;
 use crate::shown::shown;
 use crate::{MassProperties, SimulationError};
@@ -193,8 +192,11 @@ impl RigidBody {
             center,
             radius,
             rounding: body.radius,
-            cavity: cavity(&body.tree, center),
-            bores: bores(&body.tree, center, AXES_REACH * radius),
+            cavity: body.tree.bound_distance_from_point(center),
+            bores: DVec3::AXES.map(|axis| {
+                let reach = axis * (AXES_REACH * radius);
+                body.tree.bound_distance_from_segment([center - reach, center + reach])
+            }),
             damping: body.damping,
             groups: body.groups,
             surface_velocity: body.surface_velocity,

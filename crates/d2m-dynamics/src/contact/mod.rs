@@ -1,7 +1,6 @@
 //! Contacts of bodies that are close: rows, their solution, impacts.
 
 mod accuracy;
-mod anderson;
 mod block;
 mod chosen;
 mod common_turn;

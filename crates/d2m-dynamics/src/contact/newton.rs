@@ -12,13 +12,12 @@
 //! What counts is the residual of the law itself ([`System::residual`]); the best iterate by it is kept.
 
 use super::accuracy::Accuracy;
-use super::anderson::Anderson;
 use super::block::Block;
 use super::convex::Convex;
 use super::law::Projected;
 use super::solver_body::SolverBody;
 use super::system::System;
-use d2m_cholesky::Factor;
+use d2m_cholesky::{Anderson, Factor};
 use glam::DMat3;
 
 /// How much a direct solution may cost.

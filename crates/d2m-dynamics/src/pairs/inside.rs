@@ -27,7 +27,6 @@
 
 use crate::body::rigid_body::{AXES_REACH, RigidBody};
 use crate::pairs::clearance::{Placed, ROUNDING, sizes};
-use crate::pairs::hollow::free;
 use crate::pairs::part_of_flight::proven_until;
 use d2m_bvh::Window;
 use d2m_motion::Pose;
@@ -154,7 +153,7 @@ impl<'s> Nested<'s> {
         let [turns, Some(about)] = self.turning else { return self.bound_at_rest() };
         let along = || {
             let (center, way) = (self.outer.center, about.own * (AXES_REACH * self.outer.radius));
-            free(&self.outer.tree, [center - way, center + way])
+            self.outer.tree.bound_distance_from_segment([center - way, center + way])
         };
         let free = about.of_mesh.map_or_else(along, |k| self.outer.bores[k]) - self.outer.rounding;
         if free <= self.needed {
@@ -170,7 +169,10 @@ impl<'s> Nested<'s> {
         let shaft = self.shaft(turns);
         let rest = self.poses[1].rotation.conjugate();
         let center = self.outer.center + rest * (self.poses[0].translation - self.poses[1].translation);
-        let free = free(&self.outer.tree, shaft.ends.map(|end| center + rest * turns.axis * end));
+        let free = self
+            .outer
+            .tree
+            .bound_distance_from_segment(shaft.ends.map(|end| center + rest * turns.axis * end));
         free - self.outer.rounding - shaft.radius - shaft.off(turns) - self.way.length() - self.lost
     }
 

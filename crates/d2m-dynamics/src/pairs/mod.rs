@@ -3,7 +3,6 @@ pub(crate) mod clearance;
 pub(crate) mod closest_features;
 #[cfg(feature = "audit")]
 pub(crate) mod concluded;
-pub(crate) mod hollow;
 pub(crate) mod inside;
 pub(crate) mod known;
 pub(crate) mod neighbors;

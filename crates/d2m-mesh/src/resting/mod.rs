@@ -5,6 +5,7 @@ pub(crate) mod collide;
 mod concluded;
 pub(crate) mod containment;
 pub(crate) mod distance;
+mod hollow;
 pub(crate) mod node_pair;
 pub(crate) mod parts;
 pub(crate) mod proximities;

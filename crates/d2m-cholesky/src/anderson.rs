@@ -7,17 +7,30 @@ const WINDOW: usize = 6;
 /// A step of which a smaller part is left, without those before, is one of them up to rounding: 2⁻²⁶, the root of what doubles resolve.
 const LEAST_REST: f64 = 1.0 / 67_108_864.0;
 
-/// What is known of a map s → G(s) whose fixed point is sought (Anderson 1965).
+/// What is known of a map s → G(s) whose fixed point, of numbers that are not negative, is sought (Anderson 1965,
+/// [doi:10.1145/321296.321305](https://doi.org/10.1145/321296.321305)): the last six iterates are looked back on.
+///
+/// ```
+/// use d2m_cholesky::Anderson;
+/// // Goes away from its fixed point, one half, when it is iterated.
+/// let map = |s: f64| 2.0 - 3.0 * s;
+/// let (mut anderson, mut s) = (Anderson::default(), vec![0.0]);
+/// for _ in 0..3 {
+///     let answer = vec![map(s[0])];
+///     s = anderson.next(&s, answer);
+/// }
+/// assert!((s[0] - 0.5).abs() < 1e-12);
+/// ```
 #[derive(Debug, Default)]
-pub(super) struct Anderson {
+pub struct Anderson {
     /// Differences of consecutive answers, and of what they differ by from their arguments.
     steps: VecDeque<(Vec<f64>, Vec<f64>)>,
     last: Option<(Vec<f64>, Vec<f64>)>,
 }
 
 impl Anderson {
-    /// The next argument, not below zero, after `argument` was answered by `answer`.
-    pub(super) fn next(&mut self, argument: &[f64], answer: Vec<f64>) -> Vec<f64> {
+    /// The next argument, not below zero, after `argument` was answered by `answer`, which is as long.
+    pub fn next(&mut self, argument: &[f64], answer: Vec<f64>) -> Vec<f64> {
         let off: Vec<f64> = answer.iter().zip(argument).map(|(g, s)| g - s).collect();
         let minus = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x - y).collect::<Vec<f64>>();
         if let Some((old_answer, old_off)) = self.last.replace((answer.clone(), off.clone())) {
