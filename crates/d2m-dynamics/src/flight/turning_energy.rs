@@ -12,12 +12,13 @@ use crate::flight::attempt::Attempt;
 use crate::flight::problem::Problem;
 use crate::flight::solved_body::moves;
 use glam::{DQuat, DVec3};
+use std::borrow::Cow;
 
 /// The part of the energy of turning that a flight may have more or less than the momenta that it begins with: what is found of its middle is off by
 /// 2⁻¹¹ of it in flights as short as those of bodies that nothing meets, and by any factor where nothing is found.
 const MOST_OFF: f64 = 1.0 / 128.0;
 
-impl Problem<'_> {
+impl<'s> Problem<'s> {
     /// Does each body turn with the energy that its momenta have at the start of its flight, and have at its end? What joints hold does not turn freely.
     pub(crate) fn keeps_energy_of_turning(&self, attempt: &Attempt) -> bool {
         self.has_rows() || self.turns(attempt).iter().all(|turn| turn.is_flown() && turn.ends_as_it_begins())
@@ -28,25 +29,21 @@ impl Problem<'_> {
         self.has_rows() || self.turns(attempt).iter().all(Turn::ends_as_it_begins)
     }
 
-    fn turns(&self, attempt: &Attempt) -> Vec<Turn<'_>> {
+    fn turns(&self, attempt: &Attempt) -> Vec<Turn<'s>> {
         let mut added = vec![Momenta::default(); self.states.len()];
         add(&attempt.found.contacts, &mut added, |body| self.place(body));
         let length = attempt.span.remaining;
-        let bodies = self.states.iter().zip(&attempt.system.bodies).zip(&added);
-        let moved = bodies.filter(|((state, _), _)| moves(state));
-        moved
-            .map(|((state, body), added)| {
-                let middle = state.torque * state.lead.unwrap_or(0.5 * length);
-                Turn {
-                    state,
-                    momentum: state.angular_momentum + middle + added.angular,
-                    spin: body.velocity.angular,
-                    length,
-                    // Of bodies at rest the momentum is what rounding leaves of impulses.
-                    least: state.mass * self.speed() * self.speed(),
-                }
-            })
-            .collect()
+        let turn = |(k, state): (usize, &'s Cow<'s, RigidBody>)| Turn {
+            state,
+            momentum: state.angular_momentum
+                + state.torque * state.lead.unwrap_or(0.5 * length)
+                + added[k].angular,
+            spin: attempt.system.bodies[k].velocity.angular,
+            length,
+            // Of bodies at rest the momentum is what rounding leaves of impulses.
+            least: state.mass * self.speed() * self.speed(),
+        };
+        self.states.iter().enumerate().filter(|(_, state)| moves(state)).map(turn).collect()
     }
 }
 
