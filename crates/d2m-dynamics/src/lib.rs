@@ -32,8 +32,6 @@
 mod advance;
 mod body;
 mod contact;
-#[cfg(test)]
-mod drawn;
 mod error;
 mod flight;
 mod joint;

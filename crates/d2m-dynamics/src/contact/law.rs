@@ -109,16 +109,16 @@ impl Law {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drawn::draw;
+    use d2m_testing::{Draw, KnuthRandom};
 
     /// What is left over lies in the polar cone and is orthogonal to the projection: Moreau's theorem, which says that it is the nearest.
     #[test]
     fn projections_are_the_nearest_impulses() {
-        let state = &mut 3;
+        let state = &mut KnuthRandom(3);
         let mut seen = [0; 3];
         for _ in 0..2000 {
-            let friction = 2.0 * draw(state).abs();
-            let y = [2.0 * draw(state), draw(state), draw(state)];
+            let friction = 2.0 * state.signed().abs();
+            let y = [2.0 * state.signed(), state.signed(), state.signed()];
             let p = Law::Cone { friction }.project(y);
             let left = [0, 1, 2].map(|i| y[i] - p[i]);
             let length = |x: [f64; 3]| x[1].hypot(x[2]);
@@ -134,10 +134,10 @@ mod tests {
     /// The derivative is that of differences.
     #[test]
     fn slopes_are_derivatives() {
-        let state = &mut 5;
+        let state = &mut KnuthRandom(5);
         for _ in 0..500 {
-            let law = Law::Cone { friction: 0.1 + draw(state).abs() };
-            let y = [draw(state), draw(state), draw(state)];
+            let law = Law::Cone { friction: 0.1 + state.signed().abs() };
+            let y = [state.signed(), state.signed(), state.signed()];
             let [nn, nt, nu, tt, tu, uu] = law.project_with_slope(y).slope.unwrap_or_default();
             let slope = [[nn, nt, nu], [nt, tt, tu], [nu, tu, uu]];
             for (column, expected) in slope.iter().enumerate() {

@@ -63,7 +63,7 @@ pub(super) mod tests {
     use crate::body::velocity::Velocity;
     use crate::contact::point::Material;
     use crate::contact::{ContactPoint, SolverBody, tangents, upright};
-    use crate::drawn::vector;
+    use d2m_testing::{Draw, KnuthRandom};
     use glam::{DMat3, DVec3};
 
     const ACCURACY: Accuracy = Accuracy {
@@ -111,17 +111,17 @@ pub(super) mod tests {
     /// that are askew, with the two below it or with the ground.
     #[test]
     fn ways_end_where_sweeps_lead_back() {
-        let (mut bodies, state) = (column(576, 0.01).bodies, &mut 5);
+        let (mut bodies, state) = (column(576, 0.01).bodies, &mut KnuthRandom(5));
         bodies.iter_mut().for_each(|body| body.velocity.linear.x = 10.0);
         let askew = |k: usize| {
             let below = (k / 4).checked_sub(24);
             let lower = below.map_or(576, |body| body - body % 24 + (body + k % 4 / 2) % 24);
-            let normal = (DVec3::Y + 0.5 * vector(state)).normalize();
+            let normal = (DVec3::Y + 0.5 * state.vector()).normalize();
             ContactPoint {
                 normal,
                 tangents: tangents(normal),
-                arm_a: 0.5 * DVec3::Y + 0.4 * vector(state),
-                arm_b: -0.5 * DVec3::Y + 0.4 * vector(state),
+                arm_a: 0.5 * DVec3::Y + 0.4 * state.vector(),
+                arm_b: -0.5 * DVec3::Y + 0.4 * state.vector(),
                 material: Material { friction: 0.5, restitution: 0.0 },
                 ..upright([lower, k / 4])
             }

@@ -183,10 +183,10 @@ mod tests {
     use super::*;
     use crate::Body;
     use crate::body::velocity::Velocity;
-    use crate::drawn::{draw, vector};
     use d2m_bvh::{MeshTree, Posed, Solid, distance};
     use d2m_mesh::Faces;
     use d2m_motion::{ConstantTwist, RigidMotion};
+    use d2m_testing::{Draw, KnuthRandom};
     use std::sync::Arc;
 
     /// A box of these half sides, at time 1.
@@ -199,10 +199,10 @@ mod tests {
         body
     }
 
-    fn any(place: DVec3, speed: f64, state: &mut u64) -> RigidBody {
-        let size = vector(state).abs() + DVec3::splat(0.2);
-        let turn = DQuat::from_xyzw(draw(state), draw(state), draw(state), draw(state) + 1.5);
-        let velocity = Velocity { linear: vector(state) * speed, angular: vector(state) * 5.0 };
+    fn any(place: DVec3, speed: f64, state: &mut KnuthRandom) -> RigidBody {
+        let size = state.vector().abs() + DVec3::splat(0.2);
+        let turn = DQuat::from_xyzw(state.signed(), state.signed(), state.signed(), state.signed() + 1.5);
+        let velocity = Velocity { linear: state.vector() * speed, angular: state.vector() * 5.0 };
         flying(size, place, turn, velocity)
     }
 
@@ -214,13 +214,13 @@ mod tests {
     /// No bound is more than the distance of any time of the flights.
     #[test]
     fn bounds_are_no_more_than_the_distance() {
-        let state = &mut 1;
+        let state = &mut KnuthRandom(1);
         let (mut held, mut close) = ([0; 2], [0; 2]);
         for k in 0..600 {
             let speed = [1.0, 20.0][k % 2];
             let (a, b) = (any(DVec3::ZERO, speed, state), any(DVec3::X * 3.0, speed, state));
             let bodies = [&a, &b];
-            let (now, tau) = (1.0 + 0.1 * draw(state).abs(), 0.1 * draw(state).abs());
+            let (now, tau) = (1.0 + 0.1 * state.signed().abs(), 0.1 * state.signed().abs());
             let poses = bodies.map(|body| body.pose_at(now - 0.02));
             let posed = [0, 1].map(|i| Posed::new(&bodies[i].tree, poses[i]));
             let found = distance(posed[0], posed[1], Solid::Filled).unwrap();
@@ -257,13 +257,13 @@ mod tests {
     /// Also along directions that no distance is along, and that turn otherwise than the bodies.
     #[test]
     fn bounds_along_directions_are_no_more_than_the_gap() {
-        let state = &mut 2;
+        let state = &mut KnuthRandom(2);
         for k in 0..2000 {
             let speed = [1.0, 50.0][k % 2];
             let (a, b) = (any(DVec3::ZERO, speed, state), any(DVec3::X * 3.0, speed, state));
-            let (bodies, normal) = ([&a, &b], vector(state).normalize());
-            let spin = [vector(state) * 5.0, a.flight.angular_velocity()][k / 2 % 2];
-            let tau = 0.1 * draw(state).abs();
+            let (bodies, normal) = ([&a, &b], state.vector().normalize());
+            let spin = [state.vector() * 5.0, a.flight.angular_velocity()][k / 2 % 2];
+            let tau = 0.1 * state.signed().abs();
             let bound = bound_along(normal, spin, &Placed::at(bodies, 1.0), tau).unwrap();
             for i in 0..=32 {
                 let gap = gap(normal, spin, bodies, 1.0, 1.0 + tau * f64::from(i) / 32.0);
@@ -275,13 +275,13 @@ mod tests {
     /// Where a direction shows nothing of a whole flight it does so of parts: until then the bodies are further apart than that.
     #[test]
     fn directions_show_more_of_parts_of_flights() {
-        let state = &mut 3;
+        let state = &mut KnuthRandom(3);
         let (mut whole, mut all, mut some) = (0, 0, 0);
         for k in 0..600 {
             let (a, b) = (any(DVec3::ZERO, 2.0, state), any(DVec3::X * 3.0, 2.0, state));
             let bodies = [&a, &b];
-            let now = 1.0 + 0.1 * draw(state).abs();
-            let window = Window::try_new(now, now + 0.3 * draw(state).abs()).unwrap();
+            let now = 1.0 + 0.1 * state.signed().abs();
+            let window = Window::try_new(now, now + 0.3 * state.signed().abs()).unwrap();
             let posed = bodies.map(|body| Posed::new(&body.tree, body.pose_at(now)));
             let found = distance(posed[0], posed[1], Solid::Filled).unwrap();
             let needed = 0.5 * found.lower;

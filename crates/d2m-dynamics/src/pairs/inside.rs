@@ -262,10 +262,10 @@ fn part_within([first, last]: [f64; 2], [low, high]: [f64; 2], unsure: f64) -> O
 mod tests {
     use super::*;
     use crate::body::velocity::Velocity;
-    use crate::drawn::{draw, vector};
     use crate::{Body, Kind, Mass, MassProperties};
     use d2m_bvh::{MeshTree, Posed, Solid, TriMesh, distance};
     use d2m_mesh::Faces;
+    use d2m_testing::{Draw, KnuthRandom};
     use glam::{DMat3, DQuat};
     use std::sync::Arc;
 
@@ -295,26 +295,27 @@ mod tests {
     /// not so, and about the axis most of what is so. Where it is so for a part of the flight, that is shown up to some part.
     #[test]
     fn pins_in_rings_are_as_far_apart_as_is_shown() {
-        let state = &mut 5;
+        let state = &mut KnuthRandom(5);
         let (pin, ring) = (shape("shaft?triangles=300"), shape("bearing?triangles=400&clearance=0.05"));
         let (mut shown, mut in_part) = ([[0; 4]; 4], 0);
         for k in 0..160 {
-            let askew = 0.02 * draw(state).abs();
+            let askew = 0.02 * state.signed().abs();
             let (mut spins, wobble) = ([0.0; 2], [0.0, 0.1, 0.5][k / 4 % 3]);
             for (bit, spin) in spins.iter_mut().enumerate() {
                 if (k % 4) & (1 << bit) != 0 {
-                    *spin = 60.0 * draw(state);
+                    *spin = 60.0 * state.signed();
                 }
             }
             let mut body = |tree: &Arc<MeshTree>, spin: f64| {
-                let tilt = DQuat::from_xyzw(askew * draw(state), askew * draw(state), draw(state), 1.5);
-                let (place, turn) = (vector(state) * 0.01 + DVec3::X, tilt.normalize());
-                let angular = (turn * DVec3::Z + vector(state) * wobble) * spin;
-                flying(tree, place, turn, Velocity { linear: vector(state) * 0.2, angular })
+                let tilt =
+                    DQuat::from_xyzw(askew * state.signed(), askew * state.signed(), state.signed(), 1.5);
+                let (place, turn) = (state.vector() * 0.01 + DVec3::X, tilt.normalize());
+                let angular = (turn * DVec3::Z + state.vector() * wobble) * spin;
+                flying(tree, place, turn, Velocity { linear: state.vector() * 0.2, angular })
             };
             let (a, b) = (body(&pin, spins[0]), body(&ring, spins[1]));
-            let tau = 0.02 * draw(state).abs();
-            let (bodies, now) = ([&a, &b], 1.0 + 0.01 * draw(state).abs());
+            let tau = 0.02 * state.signed().abs();
+            let (bodies, now) = ([&a, &b], 1.0 + 0.01 * state.signed().abs());
             let least = least(bodies, now, tau);
             for (place, part) in [0.3, 0.6, 0.8, 1.0 + 1e-9].into_iter().enumerate() {
                 let is_apart = is_apart_along_axis(bodies, now, tau, part * least);
@@ -338,11 +339,11 @@ mod tests {
     /// rounded; it begins where it passes a point closest.
     #[test]
     fn the_axis_of_a_mesh_that_lies_far_away_is_no_more_exact_than_its_numbers() {
-        let state = &mut 11;
+        let state = &mut KnuthRandom(11);
         let point = Arc::new(MeshTree::new(TriMesh::point(DVec3::ZERO).unwrap()));
         let mut shown = 0;
         for k in 0..100 {
-            let (far, turn) = (vector(state) * [1e5, 1e8][k % 2], vector(state).normalize());
+            let (far, turn) = (state.vector() * [1e5, 1e8][k % 2], state.vector().normalize());
             let turn = DQuat::from_rotation_arc(DVec3::Z, turn);
             let corners = [DVec3::new(0.6, 0.0, -1.0), DVec3::new(0.6, 0.0, 1.0), DVec3::X * 2.0];
             let blade = TriMesh::try_new(corners.map(|corner| far + turn * corner).to_vec(), vec![[0, 1, 2]]);
@@ -368,18 +369,19 @@ mod tests {
     /// Spheres in shells that turn as they like.
     #[test]
     fn spheres_in_shells_are_as_far_apart_as_is_shown() {
-        let state = &mut 7;
+        let state = &mut KnuthRandom(7);
         let (ball, shell) =
             (shape("icosphere?triangles=500&scale=0.8"), shape("hollow-sphere?triangles=2000&wall=0.1"));
         let mut close = 0;
         for k in 0..100 {
             let mut body = |tree: &Arc<MeshTree>| {
-                let turn = DQuat::from_xyzw(draw(state), draw(state), draw(state), draw(state)).normalize();
-                let velocity = Velocity { linear: vector(state), angular: vector(state) * 30.0 };
-                flying(tree, vector(state) * 0.03, turn, velocity)
+                let turn = DQuat::from_xyzw(state.signed(), state.signed(), state.signed(), state.signed())
+                    .normalize();
+                let velocity = Velocity { linear: state.vector(), angular: state.vector() * 30.0 };
+                flying(tree, state.vector() * 0.03, turn, velocity)
             };
             let bodies = [&body(&ball), &body(&shell)];
-            let tau = 0.02 * draw(state).abs();
+            let tau = 0.02 * state.signed().abs();
             let (bound, least) = (bound_from_centers(&Placed::at(bodies, 1.0), tau), least(bodies, 1.0, tau));
             assert_eq!(bound, bound_from_centers(&Placed::at([bodies[1], bodies[0]], 1.0), tau));
             assert!(bound <= least, "{k}: {bound} > {least}");

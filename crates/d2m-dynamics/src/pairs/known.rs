@@ -352,10 +352,10 @@ mod tests {
     use super::*;
     use crate::Body;
     use crate::body::velocity::Velocity;
-    use crate::drawn::{draw, vector};
     use crate::pairs::clearance::are_spheres_apart;
     use d2m_bvh::MeshTree;
     use d2m_mesh::Faces;
+    use d2m_testing::{Draw, KnuthRandom};
     use glam::DQuat;
     use std::sync::Arc;
 
@@ -404,12 +404,12 @@ mod tests {
     /// Where little of a gap is left a query needs thousands of node tests, not millions.
     #[test]
     fn what_is_hardly_apart_is_queried_in_no_time() {
-        let state = &mut 1;
+        let state = &mut KnuthRandom(1);
         let (mut ended, mut held) = (0, 0);
         for k in 0..400 {
             let mut tumbling = |place: DVec3| {
-                let turn = DQuat::from_xyzw(draw(state), draw(state), draw(state), draw(state));
-                let velocity = Velocity { linear: vector(state) * 1e-3, angular: vector(state) * 9.0 };
+                let turn = DQuat::from_xyzw(state.signed(), state.signed(), state.signed(), state.signed());
+                let velocity = Velocity { linear: state.vector() * 1e-3, angular: state.vector() * 9.0 };
                 RigidBody { orientation: turn.normalize(), ..flying(place, velocity) }
             };
             let [mut still, mut coming] = [DVec3::ZERO, DVec3::X * 4e-3].map(&mut tumbling);

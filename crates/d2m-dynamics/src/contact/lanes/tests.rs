@@ -8,20 +8,20 @@ use super::{Descent, Ends, Round, Wide};
 use crate::body::velocity::Velocity;
 use crate::contact::point::{JointRow, Material, upright};
 use crate::contact::{ContactPoint, tangents};
-use crate::drawn::{draw, vector};
 use d2m_lanes::{InstructionSet, run_on};
+use d2m_testing::{Draw, KnuthRandom};
 use glam::DMat3;
 
 /// Some bodies and a ground, with up to five contacts or rows between two of them.
-fn drawn(state: &mut u64, count: usize) -> (System, Vec<f64>) {
+fn drawn(state: &mut KnuthRandom, count: usize) -> (System, Vec<f64>) {
     let mut bodies = Vec::new();
     for _ in 0..count {
-        let [x, y, z] = [vector(state), vector(state), vector(state)];
+        let [x, y, z] = [state.vector(), state.vector(), state.vector()];
         let root = DMat3::from_cols(x, y, z);
         bodies.push(SolverBody {
-            inverse_mass: 0.5 + draw(state).abs(),
+            inverse_mass: 0.5 + state.signed().abs(),
             inverse_inertia: root * root.transpose() + DMat3::IDENTITY,
-            velocity: Velocity { linear: vector(state), angular: vector(state) },
+            velocity: Velocity { linear: state.vector(), angular: state.vector() },
         });
     }
     let none = SolverBody { inverse_mass: 0.0, inverse_inertia: DMat3::ZERO, velocity: Velocity::default() };
@@ -29,14 +29,14 @@ fn drawn(state: &mut u64, count: usize) -> (System, Vec<f64>) {
     let mut contacts = Vec::new();
     for a in 0..count {
         for b in a + 1..=count {
-            if draw(state).abs() > 0.4 {
+            if state.signed().abs() > 0.4 {
                 continue;
             }
-            for _ in 0..=(draw(state).abs() * 5.0) as usize {
-                let normal = vector(state).normalize();
+            for _ in 0..=(state.signed().abs() * 5.0) as usize {
+                let normal = state.vector().normalize();
                 let law = Law::Range { lo: -0.5, hi: 0.5, softness: 0.1 };
                 let row = JointRow {
-                    is_angular: draw(state) > 0.0,
+                    is_angular: state.signed() > 0.0,
                     law,
                     pushing: 0.0,
                     target: 0.0,
@@ -46,17 +46,17 @@ fn drawn(state: &mut u64, count: usize) -> (System, Vec<f64>) {
                 contacts.push(ContactPoint {
                     normal,
                     tangents: tangents(normal),
-                    arm_a: vector(state),
-                    arm_b: vector(state),
-                    running: [draw(state), 0.0],
-                    row: (draw(state) > 0.8).then_some(row),
-                    material: Material { friction: (2.0 * draw(state)).max(0.0), restitution: 0.0 },
+                    arm_a: state.vector(),
+                    arm_b: state.vector(),
+                    running: [state.signed(), 0.0],
+                    row: (state.signed() > 0.8).then_some(row),
+                    material: Material { friction: (2.0 * state.signed()).max(0.0), restitution: 0.0 },
                     ..upright([a, b])
                 });
             }
         }
     }
-    let targets = contacts.iter().map(|_| 0.1 * draw(state)).collect();
+    let targets = contacts.iter().map(|_| 0.1 * state.signed()).collect();
     (System::new(bodies, &contacts, |body| body), targets)
 }
 
@@ -92,7 +92,7 @@ fn relax(block: &Block, bodies: &mut [SolverBody], own: &mut [f64; 3], target: f
 /// Sweeps are those of one block after the other in their order, those with friction first, with each set of instructions, to the last bit.
 #[test]
 fn sweeps_are_those_of_one_block_after_the_other() {
-    let state = &mut 7;
+    let state = &mut KnuthRandom(7);
     let mut kinds = [0; 2];
     for count in [1, 2, 3, 5, 12, 12, 40] {
         let (mut system, targets) = drawn(state, count);
@@ -107,7 +107,7 @@ fn sweeps_are_those_of_one_block_after_the_other() {
             let mut other = begun.clone();
             let off = run_on(set, Round { wide: &mut other, descent: None, twice: 2 });
             assert_eq!(format!("{other:?}"), format!("{wide:?}"));
-            let mut at = System { bodies: system.bodies.clone(), ..drawn(&mut 0, 0).0 };
+            let mut at = System { bodies: system.bodies.clone(), ..drawn(&mut KnuthRandom(0), 0).0 };
             (at.blocks, at.impulses) = (system.blocks.clone(), system.impulses.clone());
             other.move_bodies(&mut at.bodies);
             other.write(&mut at.impulses);
@@ -131,7 +131,7 @@ fn sweeps_are_those_of_one_block_after_the_other() {
 /// What sweeps go on along changes the velocities by what it changes the impulses, and keeps these within their laws.
 #[test]
 fn velocities_follow_from_impulses() {
-    let state = &mut 11;
+    let state = &mut KnuthRandom(11);
     let (mut system, targets) = drawn(state, 30);
     let free = system.velocities();
     let mut wide = Wide::new(&system.bodies, &system.blocks);
