@@ -100,7 +100,7 @@ pub(crate) fn select<'b>(
         let led =
             if led_into(contact, carried, velocity) > 0.0 { 0.5 * tau * bend(contact, carried) } else { 0.0 };
         // And where hardly any room is left, for whatever else turns: flights would end at one half of what there is after the other.
-        let turned = if d < LAST * gap { room_to_turn(contact, spins, &velocity, tau) } else { 0.0 };
+        let turned = if d < LAST * gap { room_to_turn(contact, spins, velocity, tau) } else { 0.0 };
         let most = led.max(turned).max(gap / span.step);
         let target = if span.room == Room::Shared {
             curved - share(contact, widest) / tau

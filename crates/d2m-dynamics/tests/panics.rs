@@ -1,17 +1,16 @@
 //! Listeners and motions are others' code: where one panics, the simulation is as after an error, and can go on.
 
-use d2m::dynamics::{Body, ContactImpulse, Kind, Simulation, SimulationOptions};
-use d2m::glam::DVec3;
-use d2m::interval::{Interval, IntervalVec3};
-use d2m::motion::{IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
-use d2m::{BodyId, MeshTree, QueryOptions, StartState};
+mod ground;
+
+use d2m_bvh::{QueryOptions, StartState};
+use d2m_dynamics::{Body, BodyId, ContactImpulse, Kind, Simulation, SimulationOptions};
+use d2m_interval::{Interval, IntervalVec3};
+use d2m_motion::{IntervalPose, IntervalTwist, Pose, RigidMotion, Twist};
+use glam::DVec3;
+use ground::cube;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-fn cube() -> Arc<MeshTree> {
-    Arc::new(MeshTree::new(d2m::shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()))
-}
 
 /// Two cubes fly along x, one after the other, in steps of a tenth.
 fn followed() -> (Simulation, [BodyId; 2]) {
