@@ -112,7 +112,9 @@ pub(super) mod tests {
     #[test]
     fn ways_end_where_sweeps_lead_back() {
         let (mut bodies, state) = (column(576, 0.01).bodies, &mut KnuthRandom(5));
-        bodies.iter_mut().for_each(|body| body.velocity.linear.x = 10.0);
+        for body in &mut bodies {
+            body.velocity.linear.x = 10.0;
+        }
         let askew = |k: usize| {
             let below = (k / 4).checked_sub(24);
             let lower = below.map_or(576, |body| body - body % 24 + (body + k % 4 / 2) % 24);
