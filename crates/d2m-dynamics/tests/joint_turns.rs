@@ -6,8 +6,9 @@ use d2m_dynamics::{Body, BodyId, Joint, JointKind, Motor, MotorTarget, Simulatio
 use glam::DVec3;
 use ground::{run, tree};
 
-fn bar(simulation: &mut Simulation) -> BodyId {
-    simulation.add(&Body::new("bar", tree("box?x=0.5&y=0.05&z=0.05"))).unwrap()
+/// Its flights are as long as the step, however fast it turns.
+fn cube(simulation: &mut Simulation) -> BodyId {
+    simulation.add(&Body::new("cube", tree("box?x=0.1&y=0.1&z=0.1"))).unwrap()
 }
 
 /// What turns more than half round in a step is where its flights have turned it: it stops at its limit, and where its motor has it go.
@@ -16,7 +17,7 @@ fn turns_are_counted_however_fast_they_are() {
     for (spin, step) in [(320.0, 0.01), (1000.0, 0.01), (40.0, 0.1), (4.0, 1.0)] {
         let mut simulation =
             Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO).with_step(step)).unwrap();
-        let body = bar(&mut simulation);
+        let body = cube(&mut simulation);
         let inertia = simulation.mass_properties(body).unwrap().inertia.z_axis.z;
         simulation.apply_impulse(body, DVec3::ZERO, DVec3::Z * (spin * inertia)).unwrap();
         let pin = Joint::new(JointKind::Revolute, body, None, DVec3::ZERO).with_limits([-20.0, 20.0]);
@@ -39,7 +40,7 @@ fn turns_are_counted_however_fast_they_are() {
         assert!((turned - 20.0).abs() < 1e-6 && (value + turned).abs() < 1e-6, "{spin}: {value} {turned}");
     }
     let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
-    let body = bar(&mut simulation);
+    let body = cube(&mut simulation);
     let pin = Joint::new(JointKind::Revolute, body, None, DVec3::ZERO);
     let pin = pin.with_motor(Motor::new(MotorTarget::Position(100.0)));
     let pin = simulation.add_joint(&pin).unwrap();
