@@ -176,18 +176,18 @@ impl Run {
         let Object(header) = serde_json::from_str::<Object<Header>>(first)
             .map_err(|error| Failure::at(place(line), json_fault(&error, first)))?;
         let flights = header.bodies.iter().map(|_| Vec::new()).collect();
-        let window = [f64::NAN; 2];
+        let window = [f64::NEG_INFINITY; 2];
         let mut run = Self { header, window, flights, marks: Vec::new(), skipped: 0.0, is_thinned: false };
         let mut is_first = true;
         for (line, text) in lines {
             let fault = |reason: String| Failure::at(place(line), reason);
             let Object(segment) = serde_json::from_str::<Object<Segment>>(text)
                 .map_err(|error| fault(json_fault(&error, text)))?;
-            if is_first {
-                run.window[0] = segment.t0;
-                is_first = false;
-            }
+            let start = segment.t0;
             run.add(segment).map_err(fault)?;
+            if core::mem::take(&mut is_first) {
+                run.window[0] = start;
+            }
         }
         if is_first {
             return Err(Failure::at(path.display(), "the run has no segments"));
@@ -203,6 +203,10 @@ impl Run {
         let (start, end) = (segment.t0, segment.t1);
         if start > end {
             return Err(format!("the segment from {start:?} to {end:?} is reversed"));
+        }
+        let [_, before] = self.window;
+        if start < before {
+            return Err(format!("t0 {start:?} is before {before:?}, the end of the segment before"));
         }
         self.window[1] = end;
         self.skipped += segment.skipped;
