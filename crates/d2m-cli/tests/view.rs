@@ -160,7 +160,7 @@ fn scenes_and_simulations_are_viewed() {
     for (fault, words) in [
         (lines[1..].join("\n"), "line 1: missing field"),
         (lines[0].to_owned(), "no segments"),
-        ([lines[0], lines[1], lines[3], lines[2]].join("\n"), "line 4: t0 0.02 is before 0.06"),
+        ([lines[0], lines[1], lines[3], lines[2]].join("\n"), "line 4: t0 0.0 is before 0.04, the end"),
         (format!("{}\n{{\"t0\": 0}}", lines[0]), "line 2: missing field `t1`"),
         (
             format!(
