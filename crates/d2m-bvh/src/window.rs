@@ -1,6 +1,6 @@
 use crate::QueryError;
 
-/// The part of a window that spans and partings are told to, if none is given: a frame in a million.
+/// The resolution of spans and of partings where none is given, as a part of the window's length.
 const RESOLUTION: f64 = 1e-6;
 
 /// A closed span of time [t0, t1], both ends finite, t0 ≤ t1.
