@@ -54,7 +54,7 @@ fn what_an_ended_run_left_is_proven_as_well() {
         assert!(said.contains(&format!("{proven} of {proven} answers verified")), "{said}");
         assert_eq!(answers(&fs::read_to_string(&out).unwrap()), plain);
     }
-    // Without a proof nothing is asked again.
+    // Without a proof no trial is queried again.
     ended(&folder, &asked, 200);
     let said = stderr(&resumed(&[]));
     assert!(

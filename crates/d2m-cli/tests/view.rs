@@ -239,7 +239,7 @@ fn options_that_say_nothing_of_what_is_viewed_are_refused() {
     for option in [["--tolerance", "1e-3"], ["--budget", "7"], ["--mode", "capoeira"]] {
         refused("run.jsonl", &option, &[option[0]]);
     }
-    // What the search may still be told.
+    // Options that the search still takes.
     for more in
         [&["--tolerance", "1e-3"][..], &["--budget", "1000", "--time-limit", "9"], &["--mode", "capoeira"]]
     {

@@ -42,7 +42,7 @@ pub(crate) struct Finding {
     pub(crate) is_certain: bool,
 }
 
-/// Was the value looked at where a span begins?
+/// Has the value been evaluated where a span begins?
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Start {
     New,

@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
     let pair = Pair::new(a, b, &arguments.query)?;
     let mut partial = if arguments.resume { Some(Partial::open(arguments, &pair, &out)?) } else { None };
     let known = partial.as_ref().map_or(0, Partial::count).min(trials.len());
-    // The lines of an ended run hold less than a proof needs: what is to be proven of them is asked again.
+    // The lines of an ended run hold less than a proof needs: the trials that are to be proven are queried once more.
     let again: Vec<usize> = (0..known).filter(|&trial| is_proven(share, trial)).collect();
     if known > 0 {
         let again = match again.len() {

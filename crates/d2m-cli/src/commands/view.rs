@@ -97,7 +97,7 @@ fn scene(arguments: &ViewArguments) -> Result<Picture, Failure> {
     picture_of_scene(&scene, &arguments.a, options)
 }
 
-/// A run is shown as it is: nothing is asked of it.
+/// A run is shown as it is: no query is made of it.
 fn refuse_for_run(arguments: &ViewArguments) -> Result<(), Failure> {
     let query = &arguments.query;
     let asked = [

@@ -38,8 +38,7 @@ pub enum JointKind {
     Locked {
         /// Ways that it may not go.
         ways: BVec3,
-        /// Axes that it may not turn about. Of two or three it is the turn, which impacts leave off by up to 3e-4 radians (measured); of one
-        /// it is the angular velocity that is zero.
+        /// Axes that it may not turn about. Of two or three the turn drifts by up to 3e-4 radians (measured); of one the angular velocity is zero.
         turns: BVec3,
     },
 }
