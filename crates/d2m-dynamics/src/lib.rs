@@ -31,7 +31,6 @@
 
 mod advance;
 mod body;
-mod contact;
 mod error;
 mod flight;
 mod joint;
@@ -49,7 +48,8 @@ mod step;
 
 pub use body::compound::Part;
 pub use body::description::{Body, BodyId, Damping, Groups, Kind, Mass, Motion, Presence};
-pub use contact::Material;
+#[doc(inline)]
+pub use d2m_contact::Material;
 #[doc(inline)]
 pub use d2m_mesh::{MassError, MassProperties};
 pub use error::{SimulationError, StepError};

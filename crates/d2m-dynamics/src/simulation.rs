@@ -1,7 +1,6 @@
 //! The simulation: bodies, settings, time.
 
 use crate::body::rigid_body::{RigidBody, Role};
-use crate::contact::{ContactPoint, Material};
 use crate::joint::rows::Joined;
 use crate::numbers::LARGEST;
 use crate::pairs::known::Pair;
@@ -12,6 +11,7 @@ use crate::{
     TouchEvent,
 };
 use d2m_bvh::{MeshTree, TriMesh};
+use d2m_contact::{ContactPoint, Material};
 use d2m_motion::Pose;
 use glam::{DQuat, DVec3};
 use std::collections::{BTreeMap, BTreeSet};
@@ -288,9 +288,9 @@ impl Simulation {
 
     pub(crate) fn material(&self, a: usize, b: usize) -> Material {
         let (one, two) = (&self.bodies[a], &self.bodies[b]);
-        self.materials.get(&(a.min(b), a.max(b))).copied().unwrap_or(Material {
-            restitution: one.restitution.max(two.restitution),
-            friction: 0.5 * (one.friction + two.friction),
-        })
+        self.materials.get(&(a.min(b), a.max(b))).copied().unwrap_or(Material::new(
+            one.restitution.max(two.restitution),
+            0.5 * (one.friction + two.friction),
+        ))
     }
 }

@@ -3,9 +3,9 @@
 use crate::body::description::Kind;
 use crate::body::rigid_body::RigidBody;
 use crate::body::turning::rotation_vector;
-use crate::body::velocity::Velocity;
 use crate::numbers::LARGEST;
 use crate::{SimulationError, StepError};
+use d2m_contact::Velocity;
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{CoveredMotion, RigidMotion as _};
 use glam::{DQuat, DVec3};

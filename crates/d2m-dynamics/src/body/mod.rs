@@ -2,7 +2,5 @@
 pub(crate) mod compound;
 pub(crate) mod description;
 pub(crate) mod kinematic;
-pub(crate) mod momenta;
 pub(crate) mod rigid_body;
 pub(crate) mod turning;
-pub(crate) mod velocity;

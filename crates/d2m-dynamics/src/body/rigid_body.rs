@@ -1,14 +1,13 @@
 //! The state of a body: what it is, where it is, what it weighs. What it flies: `flight`.
 
 use crate::body::description::{Body, BodyId, Damping, Groups, Kind, Mass, Presence};
-use crate::body::momenta::Momenta;
-use crate::body::turning::{Pull, extreme_eigenvalues};
-use crate::body::velocity::Velocity;
+use crate::body::turning::Pull;
 use crate::numbers::{Numbers, is_small, unusable_of};
 use crate::rest::quiet::Quiet;
 use crate::shown::shown;
 use crate::{MassProperties, SimulationError};
 use d2m_bvh::{MeshTree, Moving, QueryError, Solid};
+use d2m_contact::{Momenta, Velocity, extreme_eigenvalues};
 use d2m_interval::Interval;
 use d2m_mesh::Faces;
 use d2m_motion::{ConstantTwist, CoveredMotion};

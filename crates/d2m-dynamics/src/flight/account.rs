@@ -19,9 +19,8 @@
 //! begin. (Not counted: the energy of the rotation of bodies that tumble, which the midpoint rule keeps but for an oscillation,
 //! and what bodies that follow their motions do.)
 
-use crate::body::momenta::Momenta;
-use crate::body::velocity::Velocity;
 use core::ops::Neg;
+use d2m_contact::{Momenta, Velocity};
 use glam::{DMat3, DVec3};
 
 /// Relative rounding of an energy: differences of sums of fewer than 2¹² products, of 2⁻⁵³ each.

@@ -1,17 +1,16 @@
 //! Velocities of the flights of one island until a given time: targets, solution, and where flights end, put right.
 
-use crate::body::momenta::Momenta;
 use crate::body::rigid_body::RigidBody;
 use crate::body::turning::Pull;
-use crate::body::velocity::Velocity;
-use crate::contact::{
-    Accuracy, Company, ContactPoint, LAST, Present, Room, SolverBody, Span, Start, System, add,
-    in_common_turn, select,
-};
+use crate::flight::common_turn::in_common_turn;
 use crate::flight::problem::Problem;
+use crate::flight::rows::{LAST, Room, Span, select};
 use crate::flight::solved_body::{body_at, moves, still};
 use crate::joint::position_error::Ends;
 use crate::joint::pull::{couples, pulls};
+use d2m_contact::{
+    Accuracy, Company, ContactPoint, Momenta, Present, SolverBody, Start, System, Velocity, add_impulses,
+};
 use glam::{DMat3, DVec3};
 use std::borrow::Cow;
 
@@ -347,7 +346,7 @@ fn put_right(
     pulled: &[Option<Pull>],
 ) -> f64 {
     let mut added = vec![Momenta::default(); states.len()];
-    add(contacts, &mut added, place);
+    add_impulses(contacts, &mut added, place);
     let mut worst = 0.0f64;
     for (k, ((body, state), added)) in system.bodies.iter_mut().zip(states).zip(&added).enumerate() {
         let pull = pulled.get(k).copied().flatten();

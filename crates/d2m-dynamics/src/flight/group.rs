@@ -1,15 +1,14 @@
 //! Bodies that are in contact with each other, and the velocities of their next flights.
 
 use crate::SimulationOptions;
-use crate::body::momenta::Momenta;
 use crate::body::rigid_body::RigidBody;
-use crate::body::velocity::Velocity;
-use crate::contact::{Company, ContactPoint, HIT, Span, System, add, impact};
 use crate::flight::account::{Anchor, Entry, balance};
 use crate::flight::length::Clock;
 use crate::flight::problem::Problem;
+use crate::flight::rows::{HIT, Span};
 use crate::flight::solved_body::{body_at, moves, still, world_inertia};
 use crate::joint::rows::Joined;
+use d2m_contact::{Company, ContactPoint, Momenta, System, Velocity, add_impulses, impact};
 use d2m_mesh::DisjointSets;
 use glam::DMat3;
 use std::borrow::Cow;
@@ -109,7 +108,7 @@ pub(crate) fn solve(
     let driven = states.iter().any(|s| !moves(s) && !s.stands_still())
         || island.contacts.iter().any(|c| c.row.is_some() || c.running != [0.0; 2]);
     let mut rests = vec![Momenta::default(); members.len()];
-    add(&attempt.found.contacts, &mut rests, place);
+    add_impulses(&attempt.found.contacts, &mut rests, place);
     // What restores the gap, or makes room for rotation, moves the bodies in this flight and leaves no momentum.
     let velocities = |system: &System| system.bodies.iter().map(|body| body.velocity).collect::<Vec<_>>();
     let mut physical = velocities(&attempt.system);
@@ -130,7 +129,7 @@ pub(crate) fn solve(
             // Then it is made by impulses like others, and the account sees to their energy.
             attempt.store(&members);
             rests.fill(Momenta::default());
-            add(&attempt.found.contacts, &mut rests, place);
+            add_impulses(&attempt.found.contacts, &mut rests, place);
             physical = velocities(&attempt.system);
         }
     }
@@ -185,7 +184,7 @@ fn impacts_of(
     };
     let mut system = System::new(states.iter().map(start).collect(), &hit, place);
     let contacts = impact(&mut system, &hit, &inertia, options.resting_speed());
-    add(&contacts, &mut momenta, place);
+    add_impulses(&contacts, &mut momenta, place);
     Impacts { contacts, momenta }
 }
 

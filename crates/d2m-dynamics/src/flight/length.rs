@@ -1,15 +1,15 @@
 //! How long the flights of an island are: until when velocities can be solved for, and what gives way where there are none.
 
 use crate::body::rigid_body::RigidBody;
-use crate::body::velocity::Velocity;
-use crate::contact::{Company, ContactPoint, LEFT_OVER, NEAR, Room};
 use crate::flight::attempt::{Attempt, Brakes};
 use crate::flight::path::Splits;
 use crate::flight::problem::Problem;
+use crate::flight::rows::{NEAR, Room};
 use crate::flight::solved_body::moves;
 use crate::joint::energy_gain::{Gained, is_of_joints_alone};
 use crate::joint::pull::pulls;
 use crate::joint::rows::Ahead;
+use d2m_contact::{Company, ContactPoint, LEFT_OVER, Velocity};
 use glam::DVec3;
 use std::borrow::Cow;
 

@@ -1,9 +1,11 @@
 //! Flights: constant twists between contacts, the velocities that they are solved for, and how long they are.
 pub(crate) mod account;
 pub(crate) mod attempt;
+pub(crate) mod common_turn;
 pub(crate) mod group;
 pub(crate) mod length;
 pub(crate) mod path;
 pub(crate) mod problem;
+pub(crate) mod rows;
 pub(crate) mod solved_body;
 pub(crate) mod turning_energy;

@@ -1,12 +1,11 @@
 //! The flights of a body: constant twists that have the velocity of the momenta in their middle, and how long they may be.
 
 use crate::StepError;
-use crate::body::momenta::Momenta;
 use crate::body::rigid_body::RigidBody;
 use crate::body::turning::Pull;
-use crate::body::velocity::Velocity;
 use crate::rest::quiet::Surface;
 use d2m_bvh::Posed;
+use d2m_contact::{Momenta, Velocity};
 use d2m_motion::{ConstantTwist, Pose, RigidMotion};
 use glam::{DMat3, DQuat, DVec3};
 

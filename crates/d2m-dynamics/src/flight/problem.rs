@@ -2,9 +2,9 @@
 
 use crate::SimulationOptions;
 use crate::body::rigid_body::RigidBody;
-use crate::contact::{Company, ContactPoint};
 use crate::flight::solved_body::moves;
 use crate::joint::rows::Joined;
+use d2m_contact::{Company, ContactPoint};
 use std::borrow::Cow;
 
 /// Ratio of masses up to which jointed bodies are alike.

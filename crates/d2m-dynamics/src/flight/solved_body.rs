@@ -1,8 +1,7 @@
 //! Bodies as the velocities of flights are solved for.
 
 use crate::body::rigid_body::RigidBody;
-use crate::body::velocity::Velocity;
-use crate::contact::SolverBody;
+use d2m_contact::{SolverBody, Velocity};
 use glam::DMat3;
 
 /// May impulses move it? What sleeps bears what rests on it, until it wakes.

@@ -5,12 +5,11 @@
 //! is found but for flights so short that the axis hardly moves. How short is known of a body that nothing meets
 //! ([`RigidBody::horizon_within`]), and of others only with the impulses that are solved for.
 
-use crate::body::momenta::Momenta;
 use crate::body::rigid_body::RigidBody;
-use crate::contact::add;
 use crate::flight::attempt::Attempt;
 use crate::flight::problem::Problem;
 use crate::flight::solved_body::moves;
+use d2m_contact::{Momenta, add_impulses};
 use glam::{DQuat, DVec3};
 use std::borrow::Cow;
 
@@ -31,7 +30,7 @@ impl<'s> Problem<'s> {
 
     fn turns(&self, attempt: &Attempt) -> Vec<Turn<'s>> {
         let mut added = vec![Momenta::default(); self.states.len()];
-        add(&attempt.found.contacts, &mut added, |body| self.place(body));
+        add_impulses(&attempt.found.contacts, &mut added, |body| self.place(body));
         let length = attempt.span.remaining;
         let turn = |(k, state): (usize, &'s Cow<'s, RigidBody>)| Turn {
             state,

@@ -6,9 +6,8 @@
 
 use crate::SimulationOptions;
 use crate::body::rigid_body::RigidBody;
-use crate::body::velocity::Velocity;
-use crate::contact::{ContactPoint, Law, System};
 use crate::flight::solved_body::moves;
+use d2m_contact::{ContactPoint, Law, System, Velocity};
 use glam::DVec3;
 use std::borrow::Cow;
 
@@ -74,9 +73,9 @@ pub(crate) fn is_of_joints_alone(states: &[Cow<'_, RigidBody>], contacts: &[&Con
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::SolverBody;
     use crate::{Body, Simulation};
     use d2m_bvh::MeshTree;
+    use d2m_contact::SolverBody;
     use std::sync::Arc;
 
     fn cube(velocity: DVec3) -> (RigidBody, SimulationOptions) {

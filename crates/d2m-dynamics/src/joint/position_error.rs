@@ -1,8 +1,9 @@
 //! Where flights of jointed bodies end, against where their joints ask for.
 
 use crate::body::rigid_body::RigidBody;
-use crate::contact::{ContactPoint, Span, System};
+use crate::flight::rows::Span;
 use crate::joint::rows::Joined;
+use d2m_contact::{ContactPoint, System};
 use std::borrow::Cow;
 
 /// Where the flights of jointed bodies end.

@@ -14,8 +14,8 @@
 
 use crate::body::rigid_body::RigidBody;
 use crate::body::turning::Pull;
-use crate::contact::{ContactPoint, System};
 use core::ops::Range;
+use d2m_contact::{ContactPoint, System};
 use glam::{DMat3, DVec3};
 use std::borrow::Cow;
 

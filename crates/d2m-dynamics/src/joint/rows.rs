@@ -3,10 +3,10 @@
 use crate::SimulationError;
 use crate::body::rigid_body::RigidBody;
 use crate::body::turning::rotation_vector;
-use crate::contact::{ContactPoint, JointRow, Law, Material, tangents};
 use crate::joint::description::{Joint, JointKind, Motor, MotorTarget};
 use crate::numbers::{FINITE, NOT_NEGATIVE, UNUSABLE, is_small};
 use crate::shown::{shown, shown_turn};
+use d2m_contact::{ContactPoint, JointRow, Law, Material, tangents};
 use d2m_feature::FeaturePair;
 use glam::{BVec3, DQuat, DVec3};
 
@@ -390,24 +390,8 @@ struct Made<'j> {
 
 impl Made<'_> {
     fn add(&mut self, direction: DVec3, row: JointRow) {
-        let [a, b] = self.joined.bodies;
-        self.rows.push(ContactPoint {
-            a,
-            b,
-            feature: FeaturePair::VertexFace { vertex: self.rows.len() as u32, face: self.number as u32 },
-            normal: direction,
-            tangents: tangents(direction),
-            distance: 0.0,
-            is_expected: false,
-            gap: 0.0,
-            arm_a: self.arms[0],
-            arm_b: self.arms[1],
-            point: self.point,
-            material: Material { restitution: 0.0, friction: 0.0 },
-            running: [0.0; 2],
-            row: Some(row),
-            impulse: 0.0,
-            sliding: [0.0; 2],
-        });
+        let feature = FeaturePair::VertexFace { vertex: self.rows.len() as u32, face: self.number as u32 };
+        let still = ContactPoint::new(self.joined.bodies, self.arms, direction, Material::new(0.0, 0.0));
+        self.rows.push(ContactPoint { feature, point: self.point, row: Some(row), ..still });
     }
 }

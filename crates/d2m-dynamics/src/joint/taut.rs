@@ -6,10 +6,10 @@
 //! diverge in flights of any length. Bodies of such chains move as one until the end of the flight, which keeps momenta and takes the energy that
 //! they move against each other with, as an inelastic impact does.
 
-use crate::contact::ContactPoint;
 use crate::flight::problem::Problem;
 use crate::flight::solved_body::moves;
 use crate::joint::rows::{Ahead, Joined};
+use d2m_contact::ContactPoint;
 use d2m_mesh::DisjointSets;
 
 impl Problem<'_> {

@@ -2,11 +2,10 @@
 
 use crate::body::description::{Damping, Groups, Kind};
 use crate::body::rigid_body::{RigidBody, Target};
-use crate::body::velocity::Velocity;
-use crate::contact::Material;
 use crate::numbers::{FINITE, Fault, material_fault, unusable_of};
 use crate::shown::{shown, shown_turn};
 use crate::{BodyId, Motion, Simulation, SimulationError};
+use d2m_contact::{Material, Velocity};
 use d2m_motion::Pose;
 use glam::DVec3;
 
@@ -376,7 +375,7 @@ impl Simulation {
     ) -> Result<(), SimulationError> {
         check_material(restitution, friction)?;
         let key = self.key(a, b);
-        self.materials.extend((key.0 != key.1).then_some((key, Material { restitution, friction })));
+        self.materials.extend((key.0 != key.1).then_some((key, Material::new(restitution, friction))));
         self.drop_known(key.0);
         self.drop_known(key.1);
         Ok(())

@@ -1,14 +1,13 @@
 //! Where bodies are when they are added: apart, touching, or in each other.
 
 use crate::body::rigid_body::RigidBody;
-use crate::body::velocity::Velocity;
-use crate::contact::{Accuracy, Company, ContactPoint, SolverBody, Start, System};
 use crate::pairs::clearance::are_spheres_apart;
 use crate::pairs::closest_features::measure;
 use crate::pairs::known::{Pair, distance_of, held_at, size};
 use crate::pairs::neighbors::posed;
 use crate::{Simulation, SimulationError, StepError};
 use d2m_bvh::{Distance, PairCache, StartState};
+use d2m_contact::{Accuracy, Company, ContactPoint, SolverBody, Start, System, Velocity};
 use d2m_world::{Aabb, BoxTree};
 use glam::{DMat3, DVec3};
 use std::collections::BTreeSet;

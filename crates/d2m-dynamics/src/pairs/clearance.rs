@@ -182,8 +182,8 @@ pub(crate) fn bound_along(normal: DVec3, spin: DVec3, placed: &Placed<'_>, tau: 
 mod tests {
     use super::*;
     use crate::Body;
-    use crate::body::velocity::Velocity;
     use d2m_bvh::{MeshTree, Posed, Solid, distance};
+    use d2m_contact::Velocity;
     use d2m_mesh::Faces;
     use d2m_motion::{ConstantTwist, RigidMotion};
     use d2m_testing::{Draw, KnuthRandom};

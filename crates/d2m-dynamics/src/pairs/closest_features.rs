@@ -1,8 +1,8 @@
 //! The contacts of two bodies at one instant: the closest features that count.
 
 use crate::body::rigid_body::RigidBody;
-use crate::contact::{ContactPoint, Material, tangents};
 use d2m_bvh::{Proximity, ProximityOptions, QueryError, TriMesh, proximities_with, reduce_proximities};
+use d2m_contact::{ContactPoint, Material};
 use d2m_feature::FeaturePair;
 use d2m_motion::Pose;
 use glam::DVec3;
@@ -97,23 +97,11 @@ pub(crate) fn measure(
     let found = [reduced, kept].concat();
     let middle = |p: &Proximity| 0.5 * (p.point_a + p.point_b);
     let runs = b.surface_velocity_at(posed_b.pose.rotation) - a.surface_velocity_at(posed_a.pose.rotation);
-    let contact = |p: &Proximity| ContactPoint {
-        a: pair.0,
-        b: pair.1,
-        feature: p.feature,
-        normal: p.normal,
-        tangents: tangents(p.normal),
-        distance: p.distance,
-        is_expected: false,
-        gap,
-        arm_a: middle(p) - posed_a.pose.translation,
-        arm_b: middle(p) - posed_b.pose.translation,
-        point: middle(p),
-        material,
-        running: tangents(p.normal).map(|tangent| tangent.dot(runs)),
-        row: None,
-        impulse: 0.0,
-        sliding: [0.0; 2],
+    let contact = |p: &Proximity| {
+        let arms = [posed_a, posed_b].map(|body| middle(p) - body.pose.translation);
+        let touching = ContactPoint::new([pair.0, pair.1], arms, p.normal, material);
+        let running = touching.tangents.map(|tangent| tangent.dot(runs));
+        ContactPoint { feature: p.feature, distance: p.distance, gap, point: middle(p), running, ..touching }
     };
     // Where hardly any of the gap is left, what slides across must not close along the true direction either.
     let is_tight = |p: &&Proximity| p.tilt == 0.0 && p.distance < TIGHT * gap && !found.contains(*p);
@@ -222,7 +210,7 @@ mod tests {
             let corner = 0.5 * (turn.cos() + turn.sin());
             let off = DVec3::new(0.5 + 0.04 * gap - corner, 1.0 + gap, 0.0);
             let bodies = [cube(DVec3::ZERO, 0.0), cube(off, turn)];
-            let material = Material { restitution: 0.0, friction };
+            let material = Material::new(0.0, friction);
             let found = measure(&bodies, (0, 1), 0.0, AROUND * gap, gap, material, &[]).unwrap().contacts;
             found.iter().filter(|c| c.normal.y > 1.0 - 1e-12).count()
         };
@@ -245,7 +233,7 @@ mod tests {
         let measured = |tilt: DVec3, before: &[ContactPoint]| {
             let turn = DQuat::from_scaled_axis(tilt) * DQuat::from_rotation_y(0.7);
             let bodies = [plate(DVec3::ZERO, DQuat::IDENTITY), plate(DVec3::Y * (0.2 + gap), turn)];
-            let material = Material { restitution: 0.0, friction: 0.5 };
+            let material = Material::new(0.0, 0.5);
             measure(&bodies, (0, 1), 0.0, AROUND * gap, gap, material, before).unwrap().contacts
         };
         let tilt = |eighth: u32| DQuat::from_rotation_y(f64::from(eighth) * FRAC_PI_4) * DVec3::X * 1e-5;

@@ -261,9 +261,9 @@ fn part_within([first, last]: [f64; 2], [low, high]: [f64; 2], unsure: f64) -> O
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::velocity::Velocity;
     use crate::{Body, Kind, Mass, MassProperties};
     use d2m_bvh::{MeshTree, Posed, Solid, TriMesh, distance};
+    use d2m_contact::Velocity;
     use d2m_mesh::Faces;
     use d2m_testing::{Draw, KnuthRandom};
     use glam::{DMat3, DQuat};

@@ -1,8 +1,6 @@
 //! What is known of pairs of bodies, and the queries about them.
 
-use crate::body::momenta::Momenta;
 use crate::body::rigid_body::RigidBody;
-use crate::contact::ContactPoint;
 use crate::pairs::clearance::{
     Clearance, JOIN, Placed, apart_along_until, approach, bound_along, have_few_vertices, sizes,
 };
@@ -17,6 +15,7 @@ use d2m_bvh::{
     Budget, Contact, Distance, DistanceOptions, Moving, PairCache, Posed, QueryError, QueryOptions, Solid,
     StartState, TimeOfContact, Window, distance_within, time_of_contact, time_of_contact_with,
 };
+use d2m_contact::{ContactPoint, Momenta};
 use d2m_motion::{ConstantTwist, Pose};
 use glam::DVec3;
 
@@ -351,9 +350,9 @@ fn met(contact: &Contact) -> Outcome {
 mod tests {
     use super::*;
     use crate::Body;
-    use crate::body::velocity::Velocity;
     use crate::pairs::clearance::are_spheres_apart;
     use d2m_bvh::MeshTree;
+    use d2m_contact::Velocity;
     use d2m_mesh::Faces;
     use d2m_testing::{Draw, KnuthRandom};
     use glam::DQuat;

@@ -1,9 +1,9 @@
 //! Which bodies touch, and since when.
 
-use crate::body::momenta::Momenta;
 use crate::body::rigid_body::Role;
 use crate::pairs::closest_features::AROUND;
 use crate::{BodyId, Simulation, TouchChange, TouchEvent};
+use d2m_contact::Momenta;
 use std::collections::BTreeMap;
 
 impl Simulation {

@@ -1,6 +1,6 @@
 //! What the contacts of a pair take over of the impulses of those before them.
 
-use crate::contact::ContactPoint;
+use d2m_contact::ContactPoint;
 use glam::DVec3;
 
 /// Rounds over the contacts of a pair, and more as long as each leaves less than a part of what is missing, squared: where no law forbids it.
@@ -121,7 +121,8 @@ fn share_out(contacts: &mut [ContactPoint], old: &[ContactPoint]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Material, upright};
+    use crate::flight::rows::upright;
+    use d2m_contact::Material;
     use d2m_feature::FeaturePair;
 
     /// A contact below a body at this place of its face, half of its width below its center.
@@ -132,7 +133,7 @@ mod tests {
             arm_a: arm,
             arm_b: arm - DVec3::Y,
             point: arm,
-            material: Material { friction: 0.5, restitution: 0.0 },
+            material: Material::new(0.0, 0.5),
             impulse: impulse[0],
             sliding: [impulse[1], impulse[2]],
             ..upright([0, 1])

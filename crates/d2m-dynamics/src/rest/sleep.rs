@@ -3,10 +3,10 @@
 
 use crate::Simulation;
 use crate::body::rigid_body::RigidBody;
-use crate::body::velocity::Velocity;
-use crate::contact::{ContactPoint, NEAR};
 use crate::flight::group::CROWD;
+use crate::flight::rows::NEAR;
 use crate::rest::quiet::{Quiet, Rest};
+use d2m_contact::{ContactPoint, Velocity};
 use d2m_mesh::DisjointSets;
 use glam::DVec3;
 
@@ -183,7 +183,7 @@ fn sleep(body: &mut RigidBody, in_parts: bool) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::upright;
+    use crate::flight::rows::upright;
     use crate::pairs::known::Pair;
     use crate::{Body, Kind, SimulationOptions};
     use d2m_bvh::MeshTree;

@@ -1,15 +1,14 @@
 //! What a snapshot keeps of a pair of bodies: all that the next step reads of it.
 
 use crate::SimulationError;
-use crate::body::momenta::Momenta;
 use crate::body::rigid_body::{RigidBody, Target};
-use crate::contact::{ContactPoint, Material, tangents};
 use crate::numbers::{UNUSABLE, is_small, is_turn, is_unit, material_fault};
 use crate::pairs::clearance::Clearance;
 use crate::pairs::known::{Attempts, Pair, distance_of};
 use crate::shown::shown;
 use crate::snapshot::contents::{Held, Source};
 use d2m_bvh::PairCache;
+use d2m_contact::{ContactPoint, Material, Momenta};
 use d2m_feature::FeaturePair;
 use d2m_motion::Pose;
 use glam::DVec3;
@@ -194,23 +193,16 @@ impl ContactState {
     }
 
     fn restored(&self, a: usize, b: usize, gap: f64) -> ContactPoint {
+        let material = Material::new(self.restitution, self.friction);
         ContactPoint {
-            a,
-            b,
             feature: self.feature,
-            normal: self.normal,
-            tangents: tangents(self.normal),
             distance: self.distance,
-            is_expected: false,
             gap,
-            arm_a: self.arm_a,
-            arm_b: self.arm_b,
             point: self.point,
-            material: Material { restitution: self.restitution, friction: self.friction },
             running: self.running,
-            row: None,
             impulse: self.impulse,
             sliding: self.sliding,
+            ..ContactPoint::new([a, b], [self.arm_a, self.arm_b], self.normal, material)
         }
     }
 }
@@ -233,7 +225,7 @@ mod tests {
         let at = |x: f64| Body::new(format!("at {x}"), Arc::clone(&tree)).with_position(DVec3::X * x);
         let bodies: Vec<RigidBody> =
             [0.0, 1.001].map(|x| RigidBody::try_new(&at(x), Arc::clone(&faces), 0.0).unwrap()).into();
-        let material = Material { restitution: 0.0, friction: 0.5 };
+        let material = Material::new(0.0, 0.5);
         let mut pair = Pair::new(1e-3);
         pair.keep(measure(&bodies, (0, 1), 0.0, 2e-3, 1e-3, material, &[]).unwrap(), 0.0, 1e-3);
         let poses = [0, 1].map(|k| bodies[k].pose_at(0.0));

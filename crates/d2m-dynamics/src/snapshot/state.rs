@@ -1,7 +1,6 @@
 //! The state of a simulation apart from its meshes, to be kept and restored.
 
 use crate::body::rigid_body::{RigidBody, Role};
-use crate::contact::Material;
 use crate::joint::rows::Joined;
 use crate::numbers::{Fault, material_fault};
 use crate::shown::shown;
@@ -9,6 +8,7 @@ use crate::snapshot::body::BodyState;
 use crate::snapshot::contents::Source;
 use crate::snapshot::pair::PairState;
 use crate::{Simulation, SimulationError, SimulationOptions, TouchEvent};
+use d2m_contact::Material;
 use std::collections::BTreeSet;
 
 /// Everything that changes in a simulation: poses, momenta, flights, impulses of resting contacts, who sleeps and who touches, joints, kinds,
@@ -211,7 +211,7 @@ impl Simulation {
                 let [a, b] = [a, b].map(|place| next.bodies[place].name.to_string());
                 return Err(SimulationError::BadPair { a, b, name, value: shown([value]), reason });
             }
-            next.materials.insert((a, b), Material { restitution, friction });
+            next.materials.insert((a, b), Material::new(restitution, friction));
         }
         next.pairs.clear();
         for state in snapshot.pairs.iter().filter(|pair| is_whole(&pair.bodies)) {

@@ -3,12 +3,12 @@
 use super::{FEW_ITEMS, Key, Occasion, Step};
 use crate::StepError;
 use crate::body::rigid_body::RigidBody;
-use crate::contact::ContactPoint;
 use crate::flight::solved_body::moves;
 use crate::joint::rows::Ahead;
 use crate::pairs::closest_features::{AROUND, Measured, measure};
 use crate::pairs::known::Pair;
 use d2m_bvh::QueryError;
+use d2m_contact::ContactPoint;
 use d2m_mesh::parallel::map_owned;
 
 /// And those within this many times the way that two bodies come closer in what is left of the step.

@@ -5,8 +5,8 @@ use super::resolve::LEEWAY;
 use super::{FEW_ITEMS, Key, Occasion, Step};
 use crate::StepError;
 use crate::body::rigid_body::RigidBody;
-use crate::contact::ContactPoint;
 use crate::pairs::closest_features::{AROUND, measure};
+use d2m_contact::ContactPoint;
 use d2m_mesh::parallel::map_owned;
 use std::collections::BTreeMap;
 
@@ -158,7 +158,7 @@ impl Step<'_> {
 mod tests {
     use super::*;
     use crate::Body;
-    use crate::contact::upright;
+    use crate::flight::rows::upright;
     use d2m_bvh::MeshTree;
     use d2m_feature::FeaturePair;
     use d2m_mesh::Faces;

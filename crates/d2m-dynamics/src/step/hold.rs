@@ -5,10 +5,10 @@ use super::slide::{Sliding, slidings};
 use super::{Key, Step};
 use crate::StepError;
 use crate::body::rigid_body::RigidBody;
-use crate::body::velocity::Velocity;
-use crate::contact::{ContactPoint, NEAR, SolverBody, Squeeze};
+use crate::flight::rows::NEAR;
 use crate::flight::solved_body::{body_at, still};
 use crate::pairs::closest_features::{AROUND, measure};
+use d2m_contact::{ContactPoint, SolverBody, Squeeze, Velocity};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Step<'_> {

@@ -11,11 +11,11 @@ mod sense;
 mod sleepers;
 mod slide;
 
-use crate::body::momenta::Momenta;
 use crate::body::rigid_body::RigidBody;
-use crate::contact::{ContactPoint, HIT};
+use crate::flight::rows::HIT;
 use crate::{ContactListener, Simulation, StepError, StepReport};
 use connected::Sleepers;
+use d2m_contact::{ContactPoint, Momenta};
 use event::{Cause, Event};
 use expect::Expected;
 use glam::DVec3;

@@ -3,13 +3,12 @@
 use super::connected::{Group, Sleepers};
 use super::{FEW_ITEMS, Occasion, Step};
 use crate::body::rigid_body::RigidBody;
-use crate::body::velocity::Velocity;
-use crate::contact::{Company, ContactPoint};
 use crate::flight::group::{CROWD, Push, Solved, islands, solve};
 use crate::flight::length::Clock;
 use crate::flight::path::Splits;
 use crate::flight::solved_body::moves;
 use crate::{ContactImpulse, StepError};
+use d2m_contact::{Company, ContactPoint, Velocity};
 use d2m_mesh::parallel::map_owned;
 use glam::DVec3;
 use std::collections::BTreeMap;

@@ -4,11 +4,11 @@ use super::connected::{Group, Sleepers};
 use super::resolve::found_velocities;
 use super::{Occasion, Step};
 use crate::Simulation;
-use crate::body::momenta::Momenta;
-use crate::contact::{ContactPoint, NEAR};
 use crate::flight::group::Solved;
 use crate::flight::length::Clock;
+use crate::flight::rows::NEAR;
 use crate::rest::quiet::QUIET_TIME;
+use d2m_contact::{ContactPoint, Momenta};
 use std::collections::BTreeMap;
 
 /// What sleeps wakes, when the step ends, where what touches it does more to it than what it has borne: by this part of all that it bears

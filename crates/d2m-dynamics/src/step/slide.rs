@@ -1,8 +1,8 @@
 //! How far closest points may slide on their features until they may slip off, and which points beside them may further.
 
 use crate::body::rigid_body::RigidBody;
-use crate::contact::{ASKEW, CROSSING, ContactPoint, LEVER, ROUNDED};
 use crate::pairs::closest_features::vertices_of;
+use d2m_contact::{ASKEW, CROSSING, ContactPoint, LEVER, ROUNDED};
 use d2m_feature::{FeaturePair, estimate_closest_point};
 use glam::DVec3;
 
@@ -99,9 +99,9 @@ fn slide(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) -> Option<f
 mod tests {
     use super::*;
     use crate::Body;
-    use crate::contact::Material;
     use crate::pairs::closest_features::{AROUND, measure};
     use d2m_bvh::{MeshTree, TriMesh};
+    use d2m_contact::Material;
     use d2m_mesh::Faces;
     use glam::{DQuat, DVec3};
     use std::f64::consts::FRAC_PI_4;
@@ -123,7 +123,7 @@ mod tests {
     }
 
     fn contacts(bodies: &[RigidBody; 2]) -> Vec<ContactPoint> {
-        let material = Material { restitution: 0.0, friction: 0.5 };
+        let material = Material::new(0.0, 0.5);
         let contacts = measure(bodies, (0, 1), 0.0, AROUND * GAP, GAP, material, &[]).unwrap().contacts;
         assert!(!contacts.is_empty());
         contacts

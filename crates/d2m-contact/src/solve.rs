@@ -6,8 +6,8 @@ use super::newton::{Effort, MOST_RATIO, Start};
 use super::solver_body::SolverBody;
 use super::sweeps::Pace;
 use super::system::System;
-use crate::body::turning::extreme_eigenvalues;
-use crate::body::velocity::Velocity;
+use crate::moments::extreme_eigenvalues;
+use crate::velocity::Velocity;
 use glam::DVec3;
 
 /// Moved bodies up to which they may stick however fast they are, where they are not some of many.
@@ -36,7 +36,19 @@ const SWEPT: f64 = 0.5;
 const OF_SPEED: f64 = 1.0 / 16.0;
 /// How many times what solutions of bodies that move may leave counts as a failure: only then others are tried, as a direct one of a crowd,
 /// which takes longer than sweeps and of twice as much rarely leaves less than half.
-pub(crate) const LEFT_OVER: f64 = 2.0;
+///
+/// ```
+/// use d2m_contact::{Accuracy, ContactPoint, LEFT_OVER, Material, SolverBody, Start, System, Velocity};
+/// use glam::{DMat3, DVec3};
+/// let velocity = Velocity { linear: DVec3::NEG_Y, angular: DVec3::ZERO };
+/// let ball = SolverBody { inverse_mass: 1.0, inverse_inertia: DMat3::IDENTITY, velocity };
+/// let touching = ContactPoint::new([0, 1], [DVec3::Y, DVec3::NEG_Y], DVec3::Y, Material::new(0.0, 0.0));
+/// let mut system = System::new(vec![SolverBody::FIXED, ball], &[touching], |body| body);
+/// let accuracy = Accuracy::exact(1e-9);
+/// let residual = system.solve(&[0.0], accuracy, Start::Present);
+/// assert!(residual <= LEFT_OVER * system.left(accuracy)); // it is no failure
+/// ```
+pub const LEFT_OVER: f64 = 2.0;
 /// The part of what an impulse changes a rate by that rounding leaves: few sums of values as large as that, each rounded by 2⁻⁵³ of it.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 /// The part of the slow speed below which bodies are about to rest.
@@ -49,7 +61,27 @@ impl System {
     /// Few bodies, and masses far apart, are solved directly and exactly, many such bodies that move as well as others; what could stick so that it does. Of crowds sweeps come first, which
     /// cost least, unless they stand in a row. What they leave is solved directly with soft rows, which gains most where most slides; of those about to rest
     /// exactly, of many first as if nothing slid. Where that leaves more than the tolerance sweeps are tried again, and the best by the residual is taken.
-    pub(crate) fn solve(&mut self, targets: &[f64], accuracy: Accuracy, start: Start) -> f64 {
+    ///
+    /// ```
+    /// use d2m_contact::{Accuracy, ContactPoint, Material, SolverBody, Start, System, Velocity};
+    /// use glam::{DMat3, DVec3};
+    /// // A ball of a hundred million kilograms on one of a kilogram on the floor, after a step in which both have fallen.
+    /// let ball = |mass: f64| SolverBody {
+    ///     inverse_mass: 1.0 / mass,
+    ///     inverse_inertia: DMat3::IDENTITY / mass,
+    ///     velocity: Velocity { linear: DVec3::NEG_Y, angular: DVec3::ZERO },
+    /// };
+    /// let arms = [DVec3::Y, DVec3::NEG_Y];
+    /// let touching = |pair: [usize; 2]| ContactPoint::new(pair, arms, DVec3::Y, Material::new(0.0, 0.5));
+    /// let contacts = [touching([0, 1]), touching([1, 2])];
+    /// let mut system = System::new(vec![SolverBody::FIXED, ball(1.0), ball(1e8)], &contacts, |body| body);
+    /// let residual = system.solve(&[0.0; 2], Accuracy::exact(1e-9), Start::Sticking);
+    /// assert!(residual < 1e-7); // what rounding of such impulses leaves of rates
+    /// let mut solved = contacts;
+    /// system.store(&mut solved);
+    /// assert!((solved[0].impulse / (1e8 + 1.0) - 1.0).abs() < 1e-7);
+    /// ```
+    pub fn solve(&mut self, targets: &[f64], accuracy: Accuracy, start: Start) -> f64 {
         if self.is_conforming
             && !self.is_crowd()
             && let Some(residual) = self.solve_chosen(targets, accuracy, start)
@@ -170,7 +202,8 @@ impl System {
     }
 
     /// What solutions of bodies that move may leave.
-    pub(crate) fn left(&self, accuracy: Accuracy) -> f64 {
+    #[must_use]
+    pub fn left(&self, accuracy: Accuracy) -> f64 {
         self.enough(accuracy).max(self.swept(accuracy))
     }
 
@@ -232,7 +265,8 @@ impl System {
     }
 
     /// What may be left of these bodies at the speeds that they have.
-    pub(crate) fn tolerance(&self, accuracy: Accuracy) -> f64 {
+    #[must_use]
+    pub fn tolerance(&self, accuracy: Accuracy) -> f64 {
         // Of a light body that moves fast between heavy ones at rest no part may be left of these. Joints are solved far below that anyway.
         let speed = self.mean_speed();
         let speed = if self.has_joints {
@@ -244,7 +278,8 @@ impl System {
     }
 
     /// Of the moved bodies' surfaces where they touch, in the quadratic mean.
-    pub(crate) fn mean_speed(&self) -> f64 {
+    #[must_use]
+    pub fn mean_speed(&self) -> f64 {
         self.mean_speed_by(|_| 1.0)
     }
 
@@ -269,7 +304,8 @@ impl System {
     }
 
     /// More bodies than can be solved exactly whatever they do?
-    pub(crate) fn is_crowd(&self) -> bool {
+    #[must_use]
+    pub fn is_crowd(&self) -> bool {
         self.moved() > FEW && !self.is_long()
     }
 
@@ -305,9 +341,9 @@ impl System {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::ContactPoint;
-    use crate::contact::point::{Material, upright};
-    use crate::contact::sweeps::tests::column;
+    use crate::ContactPoint;
+    use crate::point::{Material, upright};
+    use crate::sweeps::tests::column;
     use glam::DMat3;
 
     const EXACT: Accuracy = Accuracy {
@@ -409,8 +445,7 @@ mod tests {
             velocity: Velocity { linear: DVec3::X * speed, angular: DVec3::ZERO },
         };
         let bodies = vec![body(0.0, 2.0), body(1.0, 4.0), body(0.0, 0.0)];
-        let rough =
-            |pair| ContactPoint { material: Material { friction: 0.5, restitution: 0.0 }, ..upright(pair) };
+        let rough = |pair| ContactPoint { material: Material::new(0.0, 0.5), ..upright(pair) };
         let system = System::new(bodies, &[rough([0, 1]), rough([1, 2])], |i| i);
         let among =
             |company: Company| system.could_stick(Accuracy { precision: 1e-7, aim: 1.0, company, ..EXACT });
@@ -425,8 +460,7 @@ mod tests {
             inverse_inertia: DMat3::IDENTITY * inverse_mass,
             velocity: Velocity { linear: DVec3::X * speed, angular: DVec3::ZERO },
         };
-        let rough =
-            |pair| ContactPoint { material: Material { friction: 0.5, restitution: 0.0 }, ..upright(pair) };
+        let rough = |pair| ContactPoint { material: Material::new(0.0, 0.5), ..upright(pair) };
         // So many that they are no couple, between two that stand still.
         let bodies: Vec<SolverBody> =
             [0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0].map(|mass| body(mass, mass)).to_vec();

@@ -1,7 +1,6 @@
 //! Which contacts the velocities of a flight have to heed, and how.
 
-use super::{ContactPoint, SolverBody};
-use crate::body::velocity::Velocity;
+use d2m_contact::{ContactPoint, SolverBody, Velocity};
 use d2m_feature::FeaturePair;
 use glam::DVec3;
 
@@ -176,12 +175,18 @@ fn share(contact: &ContactPoint, widest: f64) -> f64 {
     if room > 0.0 { room * (MUCH * near(contact) / widest).clamp(LEAST_SHARE, 1.0) } else { room }
 }
 
+/// A contact without friction of two bodies whose centers are one apart along y.
+#[cfg(test)]
+pub(crate) fn upright(bodies: [usize; 2]) -> ContactPoint {
+    let arms = [DVec3::Y * 0.5, DVec3::Y * -0.5];
+    let none = d2m_contact::Material::new(0.0, 0.0);
+    ContactPoint { gap: 1.0, ..ContactPoint::new(bodies, arms, DVec3::Y, none) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::velocity::Velocity;
-    use crate::contact::Material;
-    use crate::contact::point::upright;
+    use d2m_contact::{Material, Velocity};
     use glam::DMat3;
 
     const STILL: SolverBody = SolverBody {
@@ -213,7 +218,7 @@ mod tests {
             SolverBody { velocity: Velocity { linear: DVec3::NEG_Y * 9.0, ..STILL.velocity }, ..STILL };
         let span = Span { remaining: 1.0, step: 1.0, resting_speed: 1.0, room: Room::Kept };
         let count = |restitution: f64| {
-            let material = Material { restitution, friction: 0.0 };
+            let material = Material::new(restitution, 0.0);
             let at = |distance: f64| ContactPoint { distance, material, ..upright([0, 1]) };
             let contacts = [0.99, 1.01, 1.49, 1.51].map(at);
             select(&contacts.each_ref(), span, |i| if i == 1 { &falling } else { &STILL }).len()

@@ -3,7 +3,7 @@
 use super::ContactPoint;
 use super::law::Law;
 use super::solver_body::SolverBody;
-use crate::body::velocity::Velocity;
+use crate::velocity::Velocity;
 use glam::DVec3;
 
 /// Least part of the product of its diagonal that the determinant of the two tangents has: 2⁻²⁶. The difference of two products

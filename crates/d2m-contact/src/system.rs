@@ -5,14 +5,30 @@ use super::block::Block;
 use super::lanes::{Numbers, Wide};
 use super::law::Law;
 use super::solver_body::SolverBody;
-use crate::body::velocity::Velocity;
+use crate::velocity::Velocity;
 use d2m_cholesky::Factor;
 use glam::{DMat3, DVec3};
 
 /// Contacts between bodies: the impulses that they have, and the velocities with these.
+///
+/// ```
+/// use d2m_contact::{ContactPoint, Material, SolverBody, System, Velocity};
+/// use glam::{DMat3, DVec3};
+/// let velocity = Velocity { linear: DVec3::NEG_Y, angular: DVec3::ZERO };
+/// let ball = SolverBody { inverse_mass: 0.5, inverse_inertia: DMat3::IDENTITY, velocity };
+/// let mut touching = ContactPoint::new([0, 1], [DVec3::Y, DVec3::NEG_Y], DVec3::Y, Material::new(0.0, 0.5));
+/// let system = System::new(vec![SolverBody::FIXED, ball], &[touching], |body| body);
+/// assert_eq!((system.rate(0), system.residual(&[0.0])), (-1.0, 1.0)); // it closes, and nothing is solved yet
+/// // The impulse that stops it obeys the law.
+/// touching.impulse = 2.0;
+/// let mut warm = System::new(vec![SolverBody::FIXED, ball], &[touching], |body| body);
+/// warm.warm_start(&[touching]);
+/// assert_eq!((warm.bodies[1].velocity, warm.residual(&[0.0])), (Velocity::default(), 0.0));
+/// ```
 #[derive(Debug)]
-pub(crate) struct System {
-    pub(crate) bodies: Vec<SolverBody>,
+pub struct System {
+    /// With their present velocities.
+    pub bodies: Vec<SolverBody>,
     pub(super) blocks: Vec<Block>,
     pub(super) impulses: Vec<[f64; 3]>,
     /// How much below their targets the rates of blocks end a flight before its time; empty: no flight follows.
@@ -29,8 +45,26 @@ pub(crate) struct System {
     pub(super) is_row: bool,
 }
 
-/// The impulses of the rows and the velocities of the bodies.
-pub(crate) type Present = (Vec<[f64; 3]>, Vec<Velocity>);
+/// The impulses of the rows and the velocities of the bodies at one time, to go back to.
+///
+/// ```
+/// use d2m_contact::{Accuracy, ContactPoint, Material, SolverBody, Start, System, Velocity};
+/// use glam::{DMat3, DVec3};
+/// let velocity = Velocity { linear: DVec3::NEG_Y, angular: DVec3::ZERO };
+/// let ball = SolverBody { inverse_mass: 1.0, inverse_inertia: DMat3::IDENTITY, velocity };
+/// let touching = ContactPoint::new([0, 1], [DVec3::Y, DVec3::NEG_Y], DVec3::Y, Material::new(0.0, 0.0));
+/// let mut system = System::new(vec![SolverBody::FIXED, ball], &[touching], |body| body);
+/// let before = system.present();
+/// system.solve(&[0.0], Accuracy::exact(1e-9), Start::Present);
+/// assert!(system.rate(0).abs() < 1e-8);
+/// system.take_back(before);
+/// assert_eq!(system.rate(0), -1.0);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Present {
+    impulses: Vec<[f64; 3]>,
+    velocities: Vec<Velocity>,
+}
 
 /// Contacts of one pair from which on it is conforming: as of a pin in its hole.
 const MANY: usize = 8;
@@ -49,11 +83,11 @@ fn is_row(bodies: &[SolverBody], blocks: &[Block]) -> bool {
 
 impl System {
     /// Bodies with the velocities that they have without impulses. `place` finds a body of a contact in the list.
-    pub(crate) fn new(
-        bodies: Vec<SolverBody>,
-        contacts: &[ContactPoint],
-        place: impl Fn(usize) -> usize,
-    ) -> Self {
+    ///
+    /// # Panics
+    /// Where `place` finds no body.
+    #[must_use]
+    pub fn new(bodies: Vec<SolverBody>, contacts: &[ContactPoint], place: impl Fn(usize) -> usize) -> Self {
         let block = |contact: &ContactPoint| Block::new(contact, [contact.a, contact.b].map(&place), &bodies);
         let blocks: Vec<Block> = contacts.iter().map(block).collect();
         let mut reach = vec![0.0f64; bodies.len()];
@@ -73,7 +107,8 @@ impl System {
     }
 
     /// For flights of this length in which contacts have these least rates: what closes by more than the room that it has ends them.
-    pub(crate) fn for_flights(mut self, contacts: &[ContactPoint], targets: &[f64], length: f64) -> Self {
+    #[must_use]
+    pub fn for_flights(mut self, contacts: &[ContactPoint], targets: &[f64], length: f64) -> Self {
         let spare = |(contact, target): (&ContactPoint, &f64)| match contact.row {
             Some(_) => f64::INFINITY,
             None => target + contact.shared_room() / length,
@@ -89,7 +124,8 @@ impl System {
     }
 
     /// With other rates of surfaces that run.
-    pub(crate) fn with_running(mut self, running: &[[f64; 2]]) -> Self {
+    #[must_use]
+    pub fn with_running(mut self, running: &[[f64; 2]]) -> Self {
         for (block, running) in self.blocks.iter_mut().zip(running) {
             block.run(*running);
         }
@@ -97,19 +133,20 @@ impl System {
     }
 
     /// The bodies have other inertias and velocities, in which the impulses are contained.
-    pub(crate) fn renew(&mut self) {
+    pub fn renew(&mut self) {
         for block in &mut self.blocks {
             block.renew(&self.bodies);
         }
     }
 
     /// The rate at which the distance of a contact grows.
-    pub(crate) fn rate(&self, contact: usize) -> f64 {
+    #[must_use]
+    pub fn rate(&self, contact: usize) -> f64 {
         self.blocks[contact].rates(|i| self.bodies[i].velocity)[0]
     }
 
     /// Begins with impulses: those the contacts hold already.
-    pub(crate) fn warm_start(&mut self, contacts: &[ContactPoint]) {
+    pub fn warm_start(&mut self, contacts: &[ContactPoint]) {
         for (k, contact) in contacts.iter().enumerate() {
             let block = &self.blocks[k];
             let impulse = block.law.project(contact.impulses());
@@ -119,7 +156,7 @@ impl System {
     }
 
     /// The impulse of a row, of whatever sign, is no larger than this.
-    pub(crate) fn bound(&mut self, row: usize, most: f64) {
+    pub fn bound(&mut self, row: usize, most: f64) {
         if let Law::Range { lo, hi, .. } = &mut self.blocks[row].law {
             (*lo, *hi) = (lo.max(-most), hi.min(most));
         }
@@ -127,7 +164,7 @@ impl System {
     }
 
     /// Writes the impulses to the contacts.
-    pub(crate) fn store(&self, contacts: &mut [ContactPoint]) {
+    pub fn store(&self, contacts: &mut [ContactPoint]) {
         for (contact, [along, first, second]) in contacts.iter_mut().zip(&self.impulses) {
             (contact.impulse, contact.sliding) = (*along, [*first, *second]);
         }
@@ -146,12 +183,13 @@ impl System {
     }
 
     /// The impulses and the velocities, to go back to.
-    pub(crate) fn present(&self) -> Present {
-        (self.impulses.clone(), self.velocities())
+    #[must_use]
+    pub fn present(&self) -> Present {
+        Present { impulses: self.impulses.clone(), velocities: self.velocities() }
     }
 
     /// Goes back to them.
-    pub(crate) fn take_back(&mut self, (impulses, velocities): Present) {
+    pub fn take_back(&mut self, Present { impulses, velocities }: Present) {
         self.impulses = impulses;
         for (body, velocity) in self.bodies.iter_mut().zip(velocities) {
             body.velocity = velocity;
@@ -185,7 +223,8 @@ impl System {
     /// ```
     ///
     /// which is zero in a solution and nowhere else. The velocities follow from the impulses to rounding.
-    pub(crate) fn residual(&self, targets: &[f64]) -> f64 {
+    #[must_use]
+    pub fn residual(&self, targets: &[f64]) -> f64 {
         targets.iter().enumerate().map(|(k, &target)| self.own_residual(k, target)).fold(0.0, f64::max)
     }
 
@@ -215,7 +254,8 @@ impl System {
     }
 
     /// Twice the kinetic energy of the bodies that impulses move.
-    pub(crate) fn doubled_energy(&self, inertia: &[(f64, DMat3)]) -> f64 {
+    #[must_use]
+    pub fn doubled_energy(&self, inertia: &[(f64, DMat3)]) -> f64 {
         self.bodies
             .iter()
             .zip(inertia)

@@ -60,9 +60,10 @@ const MEAN: f64 = 0.25;
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::body::velocity::Velocity;
-    use crate::contact::point::Material;
-    use crate::contact::{ContactPoint, SolverBody, tangents, upright};
+    use crate::point::Material;
+    use crate::point::upright;
+    use crate::velocity::Velocity;
+    use crate::{ContactPoint, SolverBody, tangents};
     use d2m_testing::{Draw, KnuthRandom};
     use glam::{DMat3, DVec3};
 
@@ -77,7 +78,7 @@ pub(super) mod tests {
     };
 
     /// So many bodies of mass one on each other, the lowest one on the ground, which is the last body; all fall at one speed.
-    pub(in crate::contact) fn column(count: usize, speed: f64) -> System {
+    pub(crate) fn column(count: usize, speed: f64) -> System {
         let body = |mass: f64, speed: f64| SolverBody {
             inverse_mass: mass,
             inverse_inertia: DMat3::IDENTITY * mass,
@@ -124,7 +125,7 @@ pub(super) mod tests {
                 tangents: tangents(normal),
                 arm_a: 0.5 * DVec3::Y + 0.4 * state.vector(),
                 arm_b: -0.5 * DVec3::Y + 0.4 * state.vector(),
-                material: Material { friction: 0.5, restitution: 0.0 },
+                material: Material::new(0.0, 0.5),
                 ..upright([lower, k / 4])
             }
         };

@@ -14,7 +14,7 @@ mod tests;
 use super::block::Block;
 use super::law::Law;
 use super::solver_body::SolverBody;
-use crate::body::velocity::Velocity;
+use crate::velocity::Velocity;
 use cones::Cones;
 use d2m_lanes::{Doubles, Lanes, Quad, Task, run};
 pub(super) use group::Numbers;

@@ -7,12 +7,32 @@
 /// ```
 ///
 /// A contact has Coulomb's cone for K and, in de Saxcé's form, the shift s = μ |u_t| of its normal rate; the others have none.
+///
+/// ```
+/// use d2m_contact::Law;
+/// // A motor that pushes with no more than 3 either way.
+/// let motor = Law::Range { lo: -3.0, hi: 3.0, softness: 0.0 };
+/// assert_eq!(motor.project([5.0, 0.0, 0.0]), [3.0, 0.0, 0.0]);
+/// // A contact that slides: its impulse is on the cone.
+/// let [along, across, _] = Law::Cone { friction: 0.5 }.project([1.0, 2.0, 0.0]);
+/// assert!((across - 0.5 * along).abs() < 1e-15);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Law {
+pub enum Law {
     /// Along a normal and two tangents: |λ_t| ≤ μ λ_n.
-    Cone { friction: f64 },
+    Cone {
+        /// Coulomb's coefficient μ, not negative.
+        friction: f64,
+    },
     /// One row: lo ≤ λ ≤ hi, and the rate yields by `softness` λ.
-    Range { lo: f64, hi: f64, softness: f64 },
+    Range {
+        /// The least impulse, which may be −∞.
+        lo: f64,
+        /// The greatest one, which may be ∞.
+        hi: f64,
+        /// The rate by which it yields to an impulse of one: zero if it is hard.
+        softness: f64,
+    },
 }
 
 /// The derivative of a projection: symmetric, in the order nn, nt, nu, tt, tu, uu.
@@ -52,9 +72,10 @@ impl Law {
         }
     }
 
-    /// The nearest impulses that the law allows.
+    /// The nearest impulses that the law allows, P(y).
     #[inline]
-    pub(super) fn project(self, y: [f64; 3]) -> [f64; 3] {
+    #[must_use]
+    pub fn project(self, y: [f64; 3]) -> [f64; 3] {
         match self {
             Self::Range { lo, hi, .. } => [y[0].max(lo).min(hi), 0.0, 0.0],
             Self::Cone { friction } => {

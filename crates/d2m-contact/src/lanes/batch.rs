@@ -1,7 +1,7 @@
 //! Four pairs of bodies.
 
 use super::super::solver_body::SolverBody;
-use crate::body::velocity::Velocity;
+use crate::velocity::Velocity;
 use core::ops::Range;
 use d2m_lanes::{Doubles, Quad, QuadVec};
 use glam::DVec3;

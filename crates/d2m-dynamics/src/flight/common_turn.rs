@@ -1,7 +1,6 @@
 //! What turns with what it lies on, as on a turntable.
 
-use super::ContactPoint;
-use crate::body::velocity::Velocity;
+use d2m_contact::{ContactPoint, Velocity};
 use glam::{DQuat, DVec3};
 
 /// What surfaces that run add to the rates along a contact's tangents, with what these are in the middle of a flight of this length, where both bodies
@@ -28,7 +27,7 @@ pub(crate) fn in_common_turn(contact: &ContactPoint, [a, b]: [Velocity; 2], leng
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::point::upright;
+    use crate::flight::rows::upright;
 
     /// A body on a turntable: with the velocity of its chord it does not slide, with that of the tangent it does.
     #[test]

@@ -1,9 +1,9 @@
 //! Impacts: restitution and friction where bodies meet faster than they rest.
 
-use super::accuracy::{Accuracy, Company};
+use super::accuracy::Accuracy;
 use super::newton::Start;
 use super::{ContactPoint, System};
-use crate::body::velocity::Velocity;
+use crate::velocity::Velocity;
 use glam::DMat3;
 
 /// Rounds of impacts that are passed on at one time.
@@ -25,9 +25,28 @@ const MOST_SCALES: u32 = 16;
 ///
 /// Each round takes the contacts that close, and has them separate by Newton's restitution all at once, with Coulomb friction;
 /// contacts that close only because of that wait for the next round (Guendelman et al. 2003), so a row of spheres passes on what
-/// it is hit by. Where one is hit [`MOST_HITS`] times, the impact begins anew, and all that have been hit stay closed or open meanwhile. Newton's restitution with friction can add energy (Kane): then the round's restitution is reduced by the factor, found
+/// it is hit by. Where one is hit 16 times, the impact begins anew, and all that have been hit stay closed or open meanwhile. Newton's restitution with friction can add energy (Kane): then the round's restitution is reduced by the factor, found
 /// by regula falsi, with which the energy is what it was.
-pub(crate) fn impact(
+///
+/// The velocities of `system` are those with the impulses afterwards. `inertia`: the mass and the inertia of each of its bodies, world axes,
+/// zeros of what impulses do not move.
+///
+/// ```
+/// use d2m_contact::{ContactPoint, Material, SolverBody, System, Velocity, impact};
+/// use glam::{DMat3, DVec3};
+/// // A ball meets another one like it, which takes over its velocity.
+/// let ball = |speed: f64| SolverBody {
+///     inverse_mass: 1.0,
+///     inverse_inertia: DMat3::IDENTITY,
+///     velocity: Velocity { linear: DVec3::X * speed, angular: DVec3::ZERO },
+/// };
+/// let met = [ContactPoint::new([0, 1], [DVec3::X, DVec3::NEG_X], DVec3::X, Material::new(1.0, 0.0))];
+/// let mut system = System::new(vec![ball(3.0), ball(0.0)], &met, |body| body);
+/// let impulses = impact(&mut system, &met, &[(1.0, DMat3::IDENTITY); 2], 1e-3);
+/// assert!((impulses[0].impulse - 3.0).abs() < 1e-9);
+/// assert!((system.bodies[1].velocity.linear.x - 3.0).abs() < 1e-9);
+/// ```
+pub fn impact(
     system: &mut System,
     contacts: &[ContactPoint],
     inertia: &[(f64, DMat3)],
@@ -72,16 +91,7 @@ pub(crate) fn impact(
             };
             let targets: Vec<f64> = (0..contacts.len()).map(target).collect();
             system.begin(&before);
-            let accuracy = Accuracy {
-                precision: PRECISION * fastest,
-                relative: 0.0,
-                aim: 1.0,
-                company: Company::Few,
-                slow: f64::INFINITY,
-                still: None,
-                beside_sleepers: false,
-            };
-            residual = system.solve(&targets, accuracy, Start::Sticking);
+            residual = system.solve(&targets, Accuracy::exact(PRECISION * fastest), Start::Sticking);
             system.doubled_energy(inertia) - energy
         };
         // A body that follows its motion may work: then the others may gain.

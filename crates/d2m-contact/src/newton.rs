@@ -75,9 +75,26 @@ const LITTLE: f64 = 0.8;
 const PRESSED: f64 = 1.0 / (1u64 << 30) as f64;
 /// The part of the aim to which each round's velocities are found.
 const INNER: f64 = 0.25;
-/// Where a solution begins.
+
+/// Where a solution begins: friction has several, as of a wedge that a larger force holds as well.
+///
+/// ```
+/// use d2m_contact::{Accuracy, ContactPoint, Material, SolverBody, Start, System, Velocity};
+/// use glam::{DMat3, DVec3};
+/// // A stone between the steep sides of a groove, with friction enough to hang there: nothing presses on it yet.
+/// let stone = SolverBody {
+///     inverse_mass: 1.0,
+///     inverse_inertia: DMat3::ZERO,
+///     velocity: Velocity { linear: DVec3::NEG_Y, angular: DVec3::ZERO },
+/// };
+/// let side = |normal: DVec3| ContactPoint::new([0, 1], [DVec3::ZERO; 2], normal, Material::new(0.0, 10.0));
+/// let sides = [DVec3::new(0.99, 0.1, 0.0), DVec3::new(-0.99, 0.1, 0.0)].map(|n| side(n.normalize()));
+/// let mut system = System::new(vec![SolverBody::FIXED, stone], &sides, |body| body);
+/// assert!(system.solve(&[0.0; 2], Accuracy::exact(1e-9), Start::Sticking) < 1e-9);
+/// assert!(system.bodies[1].velocity.linear.length() < 1e-8);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Start {
+pub enum Start {
     /// All contacts stick, and the solution ends where one does not.
     Stuck,
     /// All contacts that can stick do.
@@ -273,8 +290,8 @@ mod tests {
     use super::super::point::{Material, upright};
     use super::super::sweeps::tests::column;
     use super::*;
-    use crate::body::velocity::Velocity;
-    use crate::contact::Company;
+    use crate::Company;
+    use crate::velocity::Velocity;
     use glam::DVec3;
 
     const EXACT: Accuracy = Accuracy {
@@ -316,7 +333,7 @@ mod tests {
         };
         let bodies = vec![body(0.0, DVec3::ZERO), body(0.5, DVec3::new(3.0, -1.0, 0.0))];
         let mut contact = ContactPoint { arm_a: DVec3::ZERO, arm_b: DVec3::ZERO, ..upright([0, 1]) };
-        contact.material = Material { friction: 0.3, restitution: 0.0 };
+        contact.material = Material::new(0.0, 0.3);
         let mut system = System::new(bodies, &[contact], |i| i);
         let residual = system.solve_direct(&[0.0], EXACT, Start::Sticking, Effort::FULL);
         assert!(residual < EXACT.precision, "{residual}");

@@ -4,7 +4,7 @@ use super::super::block::Block;
 use super::super::solver_body::SolverBody;
 use super::Order;
 use super::batch::{Batch, Ends, Pushes};
-use crate::body::velocity::Velocity;
+use crate::velocity::Velocity;
 use core::ops::Range;
 use d2m_lanes::{Doubles, Quad};
 
@@ -53,13 +53,13 @@ pub(super) struct Group<S> {
 
 /// The numbers of a system that lanes take over.
 #[derive(Clone, Copy)]
-pub(in crate::contact) struct Numbers<'s> {
-    pub(in crate::contact) bodies: &'s [SolverBody],
-    pub(in crate::contact) blocks: &'s [Block],
-    pub(in crate::contact) impulses: &'s [[f64; 3]],
-    pub(in crate::contact) targets: &'s [f64],
+pub(crate) struct Numbers<'s> {
+    pub(crate) bodies: &'s [SolverBody],
+    pub(crate) blocks: &'s [Block],
+    pub(crate) impulses: &'s [[f64; 3]],
+    pub(crate) targets: &'s [f64],
     /// Empty: no flight follows.
-    pub(in crate::contact) spares: &'s [f64],
+    pub(crate) spares: &'s [f64],
 }
 
 /// What is left of a group: the largest natural map, the sum of the squares of all.

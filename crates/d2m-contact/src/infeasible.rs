@@ -43,7 +43,7 @@
 //! least 1/5 after a turn of 1/32, it is less than ten times the sum: [`LEVER`].
 
 use super::{ContactPoint, SolverBody, System};
-use crate::body::velocity::Velocity;
+use crate::velocity::Velocity;
 use d2m_feature::FeaturePair;
 use d2m_interval::{Interval, IntervalVec3};
 use glam::DMat3;
@@ -53,34 +53,83 @@ const FAST: f64 = 128.0;
 /// The normal across two edges turns by what both turn over the sine of the angle between them, which is at least [`CROSSING`]: no faster than so
 /// many times the faster body.
 const TURNING: f64 = 2.0 / CROSSING;
-/// Of edges that cross at less, as a sine, the normal turns faster than is counted.
-pub(crate) const CROSSING: f64 = 0.5;
+/// Of edges that cross at less, as a sine, the normal turns faster than a [`Squeeze`] counts: such contacts have no place in it.
+///
+/// ```
+/// use glam::DVec3;
+/// let is_counted = |u: DVec3, w: DVec3| u.cross(w).length() >= d2m_contact::CROSSING; // of unit vectors along edges
+/// assert!(is_counted(DVec3::X, DVec3::Y) && !is_counted(DVec3::X, DVec3::new(0.9, 0.4, 0.0).normalize()));
+/// ```
+pub const CROSSING: f64 = 0.5;
 /// The direction of a contact is off the normal that turns so by this at most, 2⁻²⁴: then it is off its distance along it by less than twice
 /// that part of it.
-pub(crate) const ASKEW: f64 = 1.0 / (1u64 << 24) as f64;
+///
+/// ```
+/// assert!(d2m_contact::ASKEW < 1e-7);
+/// ```
+pub const ASKEW: f64 = 1.0 / (1u64 << 24) as f64;
 /// How far a direction turns meanwhile, at most.
 const MOST_TURN: f64 = 1.0 / 32.0;
 /// How far the closest points of two edges that cross so slide for what the bodies move against each other, at most.
-pub(crate) const LEVER: f64 = 10.0;
+///
+/// ```
+/// // Two edges whose closest points are 0.2 from their nearest ends stay closest while the bodies move by less than this.
+/// assert_eq!(0.2 / d2m_contact::LEVER, 0.02);
+/// ```
+pub const LEVER: f64 = 10.0;
 /// What closes in goes on for at most this part of the least arm over [`FAST`]², 2⁻⁷. What bends is then less than a tenth of what closes in for
 /// each contact of faces that takes part, a seventh across edges, and half of both where one of the bodies rests.
 const STEADY: f64 = 1.0 / (1u64 << 7) as f64;
-/// Rounding of a measured distance, of the sizes that it is computed from: fewer than 64 operations of 2⁻⁵³ each, doubled.
-pub(crate) const ROUNDED: f64 = 1.0 / (1u64 << 46) as f64;
+/// Rounding of a measured distance, of the sizes that it is computed from ([`ContactPoint::size`]): fewer than 64 operations of 2⁻⁵³ each, doubled.
+///
+/// ```
+/// assert_eq!(d2m_contact::ROUNDED, 128.0 * 0.5f64.powi(53));
+/// ```
+pub const ROUNDED: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// Contacts, the bodies of which `place` finds in the list, without velocities but for what follows its motion.
+/// Contacts, the bodies of which `place` finds in the list, without velocities but for what follows its motion: is there no motion of the others
+/// that keeps them apart?
+///
+/// By Farkas's lemma there is none if multipliers λ ≥ 0 of the contacts, with the rates g of what follows its motion, the distances d and
+/// the time τ, have
+///
+/// ```text
+/// Jᵀ λ = 0     and     Σ λ (g + d/τ) < 0
+/// ```
+///
+/// They are found in rounded arithmetic and proven with intervals, with all that turns and bends meanwhile, for all velocities up to 128 times what closes in.
+///
+/// ```
+/// use d2m_contact::{ContactPoint, Material, SolverBody, Squeeze, Velocity};
+/// use glam::{DMat3, DVec3};
+/// // A floor, a stone, and a press that comes down at a speed of one.
+/// let stone = SolverBody { inverse_mass: 1.0, inverse_inertia: DMat3::IDENTITY, ..SolverBody::FIXED };
+/// let press = SolverBody { velocity: Velocity { linear: DVec3::NEG_Y, angular: DVec3::ZERO }, ..SolverBody::FIXED };
+/// let arms = [DVec3::Y * 0.5, DVec3::Y * -0.5];
+/// let at = |pair: [usize; 2]| ContactPoint { distance: 1e-9, ..ContactPoint::new(pair, arms, DVec3::Y, Material::new(0.0, 0.0)) };
+/// let contacts = [at([0, 1]), at([1, 2])];
+/// let squeeze = Squeeze { bodies: &[SolverBody::FIXED, stone, press], contacts: &contacts, slides: &[1.0; 2], place: |body| body };
+/// assert_eq!(squeeze.closing(), 1.0);
+/// // There is room for two billionths, no more.
+/// assert!(squeeze.prove_infeasible(1.9e-9).is_none());
+/// assert_eq!(squeeze.prove_infeasible(2.1e-9).map(|contact| contact.b), Some(2));
+/// ```
 #[derive(Clone, Copy)]
-pub(crate) struct Squeeze<'s, P: Fn(usize) -> usize + Copy> {
-    pub(crate) bodies: &'s [SolverBody],
-    pub(crate) contacts: &'s [ContactPoint],
+pub struct Squeeze<'s, P: Fn(usize) -> usize + Copy> {
+    /// What is between.
+    pub bodies: &'s [SolverBody],
+    /// Their distances are those that were measured.
+    pub contacts: &'s [ContactPoint],
     /// By how much the bodies of each may move against each other until its features need not be the closest ones any more.
-    pub(crate) slides: &'s [f64],
-    pub(crate) place: P,
+    pub slides: &'s [f64],
+    /// The place of a contact's body in the list.
+    pub place: P,
 }
 
 impl<P: Fn(usize) -> usize + Copy> Squeeze<'_, P> {
     /// How fast the fastest contact closes if what impulses move stands still.
-    pub(crate) fn closing(&self) -> f64 {
+    #[must_use]
+    pub fn closing(&self) -> f64 {
         let velocity = |body: usize| self.bodies[(self.place)(body)].velocity;
         let closing = |c: &ContactPoint| -c.rate(velocity(c.a), velocity(c.b));
         self.contacts.iter().map(closing).fold(0.0, f64::max)
@@ -88,7 +137,8 @@ impl<P: Fn(usize) -> usize + Copy> Squeeze<'_, P> {
 
     /// The contact that presses most of those with what follows its motion, if no motion of the others keeps the contacts apart for this time:
     /// a proof. Of the time as much counts as leaves arms and normals about as they are. None: there is such a motion, or no proof was found.
-    pub(crate) fn prove_infeasible(&self, most: f64) -> Option<ContactPoint> {
+    #[must_use]
+    pub fn prove_infeasible(&self, most: f64) -> Option<ContactPoint> {
         let fastest = self.closing();
         let length = most.min(self.steady(fastest));
         let stays = self.stay(length, FAST * fastest);

@@ -3,7 +3,7 @@
 use super::block::Block;
 use super::law::{Projected, Slope};
 use super::system::System;
-use crate::body::velocity::Velocity;
+use crate::velocity::Velocity;
 use d2m_cholesky::{Factor, Square};
 use glam::{DMat3, DVec3};
 
