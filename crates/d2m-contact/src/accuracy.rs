@@ -1,9 +1,9 @@
-//! How exactly contacts are solved.
+//! How exactly contacts are solved, and among how many bodies.
 
-/// How much more than the precision may be left of bodies that move, at most.
+/// The residual of moving bodies may be this many times the precision, at most.
 pub(super) const LOOSE: f64 = 1024.0;
 
-/// How exactly the law is to hold.
+/// How small the residual of a solution has to be. All but `relative` and `aim` are speeds, in the units of the rates.
 ///
 /// ```
 /// use d2m_contact::{Accuracy, Company};
@@ -12,23 +12,23 @@ pub(super) const LOOSE: f64 = 1024.0;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Accuracy {
-    /// Of rates: what is left of bodies at rest.
+    /// The residual that bodies at rest may have.
     pub precision: f64,
-    /// The part of the bodies' mean speed that may be left, no more than 1024 times the precision.
+    /// The residual that moving bodies may have, as a part of their mean speed; at most 1024 times the precision counts.
     pub relative: f64,
-    /// The part of the precision that is aimed at where bodies rest: what is left of one step is there in the next one.
+    /// Bodies at rest are solved to this part of the precision where possible: errors of one step are still there in the next.
     pub aim: f64,
-    /// What else there is.
+    /// How many other bodies there are.
     pub company: Company,
-    /// What slides slower than this could as well stick.
+    /// Contacts that slide slower than this are tried as sticking ones first.
     pub slow: f64,
-    /// What may be left of bodies of a crowd by the impulses that there are.
+    /// Impulses of a crowd with a residual up to this are left as they are.
     pub still: Option<f64>,
-    /// What sleeps beside them is woken by other solutions: these aim at that much, too.
+    /// The bodies touch others that sleep, which any change of impulses may wake: no residual below `still` is sought.
     pub beside_sleepers: bool,
 }
 
-/// What else there is besides the bodies of a system.
+/// How many bodies there are besides those of a system.
 ///
 /// ```
 /// use d2m_contact::{Accuracy, Company};
@@ -36,17 +36,17 @@ pub struct Accuracy {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Company {
-    /// No more than a few bodies.
+    /// A few.
     Few,
-    /// Many bodies: sweeps come first also where few of them move.
+    /// Many: sweeps come first, even in a system of few bodies.
     Crowd,
-    /// Many bodies, some of which contacts connect with these, after the step's own solution: what is solved again is solved no more exactly
-    /// than that, but ends no flight.
+    /// Many, some of them connected with these by contacts, all of which have been solved once: solving these again need not be more exact than
+    /// that was, but no contact may be left closing so fast that it ends a flight.
     Heap,
 }
 
 impl Accuracy {
-    /// Of few bodies: what is left of rates is no more than this wherever such a solution is found, and what can stick does.
+    /// For a few bodies: the residual is at most `precision` wherever such a solution is found, and contacts stick where they can.
     #[must_use]
     pub const fn exact(precision: f64) -> Self {
         let (company, slow) = (Company::Few, f64::INFINITY);

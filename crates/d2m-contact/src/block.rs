@@ -1,4 +1,4 @@
-//! One contact, or one row of a joint: rates of two bodies, and what impulses do to them.
+//! A block: one contact (three rows) or one row of a joint, with the rates of its two bodies and the effect of impulses on them.
 
 use super::ContactPoint;
 use super::law::Law;
@@ -20,16 +20,17 @@ pub(super) struct Block {
     /// From the centers of a and b to the point of the contact; of one row, what turns them by it.
     pub(super) arms: [DVec3; 2],
     pub(super) law: Law,
-    /// How fast the rates change at most by an impulse of one along a line: what makes a rate of an impulse.
+    /// The largest diagonal entry of the block's matrix: an impulse of one along a row changes the row's rate by this at most. It turns
+    /// impulses into rates.
     pub(super) scale: f64,
-    /// The inverse of the change of the first rate by an impulse of one.
+    /// The inverse of the first diagonal entry.
     pub(super) mass: f64,
     /// How the rates along the tangents change by an impulse of one along the normal.
     pub(super) coupling: [f64; 2],
-    /// The impulses along the tangents that stop rates along them: a symmetric matrix. None: a direction cannot be moved.
+    /// The inverse of the tangents' part of the matrix, symmetric: from rates to the impulses that stop them. None: it is singular.
     pub(super) stopping: Option<[f64; 3]>,
-    /// The inverse of a bound on the eigenvalues of what that is the inverse of: one step for both directions, so that what slides is braked
-    /// against its velocity and not askew.
+    /// One over the larger eigenvalue of the tangents' part. Sliding contacts take this one step in both directions, so that friction points
+    /// against the velocity.
     pub(super) step: f64,
     /// What surfaces that run add to the rates along the tangents.
     pub(super) running: [f64; 2],

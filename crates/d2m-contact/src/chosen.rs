@@ -1,4 +1,4 @@
-//! Many contacts of one pair, as of a pin in its hole, of which few press: those are solved for, and the others are looked after.
+//! Pairs with many contacts of which only a few press, as of a pin in its hole: those few are solved, and others are added where needed.
 
 use super::accuracy::Accuracy;
 use super::block::Block;
@@ -6,15 +6,15 @@ use super::newton::Start;
 use super::solve::GROSS;
 use super::system::System;
 
-/// Blocks of one pair that are added in a round at most, those that are furthest from their law.
+/// The most blocks of one pair that are added in a round: those with the largest residuals.
 const ADDED: usize = 6;
 /// Rounds after which all blocks are solved at once.
 const MOST_ROUNDS: u32 = 16;
 
 impl System {
-    /// Solves for the blocks that have impulses or are far from their law, adds those that the solution leaves far from it, and so on:
-    /// what is left over has no impulse and needs none. The residual is that of all blocks. None: there are always others, or no velocities
-    /// obey the law, as of bodies that are crushed, which a choice of blocks would have give way to one side. All is as it was then.
+    /// Solves the blocks that have impulses or large residuals, adds blocks whose residuals are large then, and so on until there are none. The blocks
+    /// left out have no impulse and need none. Returns the residual of all blocks. None, and nothing changed: blocks were still added in the last
+    /// round, or no velocities obey the law, as when a body is crushed (solving a part of its blocks would push it to one side).
     pub(super) fn solve_chosen(&mut self, targets: &[f64], accuracy: Accuracy, start: Start) -> Option<f64> {
         let begun = self.present();
         let mut is_chosen: Vec<bool> = self.impulses.iter().map(|impulse| *impulse != [0.0; 3]).collect();

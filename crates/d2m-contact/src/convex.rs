@@ -60,7 +60,7 @@ impl Convex<'_> {
         [0, 1, 2].map(|i| center[i] - above[i] / soft)
     }
 
-    /// Rows that are soft by themselves are so about zero.
+    /// The multiplier λ₀ and the softness of a block; a row that is soft by its own law has its own softness, about zero.
     fn center_of(&self, k: usize, block: &Block) -> ([f64; 3], f64) {
         let softness = block.law.softness();
         if softness > 0.0 { ([0.0; 3], softness) } else { (self.center[k], self.soft * block.scale) }

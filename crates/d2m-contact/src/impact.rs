@@ -8,14 +8,14 @@ use glam::DMat3;
 
 /// Rounds of impacts that are passed on at one time.
 const MOST_ROUNDS: u32 = 64;
-/// So often one contact is hit in them: what is light is thrown to and fro between a wall and what comes at it, as often as that is heavier. Then all
-/// that has been hit separates at once.
+/// How often one contact may be hit in them. A light body between a wall and a heavy one that comes at it is thrown to and fro, the more often the
+/// heavier that is. After so many hits all contacts that have been hit are made to separate at once.
 const MOST_HITS: u32 = 16;
 /// Rates are solved to this part of the fastest closing speed.
 const PRECISION: f64 = 1e-13;
 /// Relative increase of the energy that counts as rounding.
 const ENERGY_ROUNDING: f64 = 1e-12;
-/// The part of the fastest closing speed that solutions may leave where something follows its motion: what is more obeys no law.
+/// Where a body follows its motion, a residual above this part of the fastest closing speed means that no impulses obey the law.
 const UNSOLVED: f64 = 1.0 / 8.0;
 /// Solutions by which the scale of the restitution is found.
 const MOST_SCALES: u32 = 16;

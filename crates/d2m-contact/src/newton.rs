@@ -7,9 +7,10 @@
 //! ```
 //!
 //! (an augmented Lagrangian; P projects on the cone of each contact). Its Hessian M + Jᵀ (∂P/r) J is positive definite and sparse by pairs of
-//! bodies, so Newton's method with an exact line search finds it whatever the masses are. Around it λ₀ ← λ, and s ← μ |u_t| by Anderson's
-//! acceleration: de Saxcé's form of the law. s begins at zero: what can stick sticks, of the several solutions that friction has.
-//! What counts is the residual of the law itself ([`System::residual`]); the best iterate by it is kept.
+//! bodies, so Newton's method with an exact line search finds the minimum whatever the masses are. That is one *round*. After each round
+//! λ₀ ← λ, and s ← μ |u_t| by Anderson's acceleration, as de Saxcé's form of the law asks for. Of the several solutions that friction may have,
+//! rounds that begin with s = 0 find one in which contacts stick where they can. Every iterate is judged by the residual of the law itself
+//! ([`System::residual`]), and the best one is kept.
 
 use super::accuracy::Accuracy;
 use super::block::Block;
@@ -20,26 +21,26 @@ use super::system::System;
 use d2m_cholesky::{Anderson, Factor};
 use glam::DMat3;
 
-/// How much a direct solution may cost.
+/// How many rounds and Newton steps a direct solution may take.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Effort {
-    /// Rounds of λ and s at most.
+    /// The most rounds.
     rounds: u32,
-    /// Newton steps of one round at most.
+    /// The most Newton steps in a round.
     steps: u32,
-    /// Rounds one after the other that gain nothing, after which no other one is tried.
+    /// The solution ends after this many rounds in a row without a smaller residual.
     losses: u32,
 }
 
 impl Effort {
-    /// As exact as it gets.
+    /// For an exact solution.
     pub(super) const FULL: Self = Self { rounds: 20, steps: 80, losses: 3 };
-    /// Of many bodies that come to rest: in piles side by side many rounds gain nothing before one does.
+    /// For many bodies that come to rest: of piles side by side the residual falls only in some of the rounds.
     pub(super) const PATIENT: Self = Self { rounds: 35, losses: 7, ..Self::FULL };
-    /// Where all of them may stick already: then rows that get harder find it in four or five rounds.
+    /// For bodies of which every contact may stick: then four or five rounds, with ever harder rows, are enough.
     pub(super) const STUCK: Self = Self { rounds: 6, ..Self::FULL };
-    /// After sweeps that left too much: with soft rows three or four steps find a round's velocities also where much slides, and
-    /// the first rounds gain most.
+    /// For what sweeps have left of moving bodies: with soft rows a round takes three or four steps, even where many contacts slide, and the
+    /// first rounds reduce the residual most.
     pub(super) const SHORT: Self = Self { rounds: 4, steps: 8, ..Self::FULL };
 
     fn is_short(self) -> bool {
@@ -47,36 +48,36 @@ impl Effort {
     }
 }
 
-/// Ratio of masses beyond which sweeps converge too slowly, and Newton's method does on rows as hard as it asks for.
+/// The ratio of masses beyond which sweeps converge too slowly, and so does Newton's method on rows as hard as that ratio asks for.
 pub(super) const MOST_RATIO: f64 = 30.0;
-/// Of rows of softness r a round leaves r/(r + m/M) of what the heaviest body, of mass M, asks for from the lightest one, of mass m, so no
-/// more than this part of m/M.
+/// With rows of softness r one round leaves r/(r + m/M) of the rate with which the heaviest body, of mass M, presses on the lightest one, of
+/// mass m. So r is this part of m/M.
 const SHARE: f64 = 1e-2;
-/// And at least, as a part of that, and in any case.
+/// The least softness, as a part of that one, and of any rows.
 const HARDEST: f64 = 1e-4;
 const LEAST_SOFT: f64 = 1e-11;
-/// It is made smaller by this where most of what a round leaves is what its rows yield, and greater by this where its velocities are not found:
-/// many contacts that slide ask for that, and harder rows only more so.
+/// The softness is multiplied by the first factor where most of a round's residual comes from rows that yield, and by the second one where the
+/// minimum of a round is not found, as happens where many contacts slide, the more the harder the rows are.
 const HARDER: f64 = 0.05;
 const SOFTER: f64 = 100.0;
-/// The part of what a round leaves up to which it is not its rows that yield but shifts that are others: these converge no sooner on harder
-/// rows, on which Newton's method takes the more steps the harder they are.
+/// Rows count as yielding where the residual with the round's own shifts exceeds this part of the residual. Below that the shifts have changed,
+/// which converge no faster on harder rows, while Newton's method takes more steps there.
 const YIELDED: f64 = 0.5;
-/// But no greater than this, with which a solution begins.
+/// The greatest softness at the start of a solution.
 const MOST_SOFT: f64 = 1e-2;
-/// And with this where there are joints: what their rows yield adds up from step to step.
+/// The same where there are joints: errors of their rows add up from step to step.
 const JOINED: f64 = 1e-5;
-/// Of bodies that move, a round that leaves more than this part of the one before is the last one, once what is left is within the tolerance.
+/// For moving bodies a round within the tolerance is the last one if its residual exceeds this part of that of the round before.
 const GAINED: f64 = 1.0 / 16.0;
-/// Of a crowd, a round that leaves more than this of the one before is the last one.
+/// After sweeps a round is the last one if its residual exceeds this part of that of the round before.
 const LITTLE: f64 = 0.8;
-/// The softness of rows, of their scale, where multipliers are to prove that no velocities obey them: what these leave is of this order
-/// against the rates that are asked for, and far above rounding.
+/// The softness of rows, relative to their scale, when multipliers are sought for a proof that no velocities obey them. Errors are of this order
+/// relative to the rates, far above rounding.
 const PRESSED: f64 = 1.0 / (1u64 << 30) as f64;
-/// The part of the aim to which each round's velocities are found.
+/// The minimum of a round is found to this part of the residual that is aimed at.
 const INNER: f64 = 0.25;
 
-/// Where a solution begins: friction has several, as of a wedge that a larger force holds as well.
+/// Where a solution begins. Friction often allows several: a wedge may slip with a small normal force, or stick with any larger one.
 ///
 /// ```
 /// use d2m_contact::{Accuracy, ContactPoint, Material, SolverBody, Start, System, Velocity};
@@ -95,11 +96,11 @@ const INNER: f64 = 0.25;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// All contacts stick, and the solution ends where one does not.
+    /// With all contacts sticking; the solution ends where one cannot.
     Stuck,
-    /// All contacts that can stick do.
+    /// With all contacts sticking; those that cannot begin to slide.
     Sticking,
-    /// What slides goes on to slide.
+    /// With the sliding that there is.
     Present,
 }
 
@@ -137,7 +138,7 @@ impl System {
         let most_soft = if self.has_joints || self.is_long() { JOINED } else { MOST_SOFT };
         let mut soft = (SHARE / self.ratio()).clamp(LEAST_SOFT, most_soft);
         let is_uneven = self.ratio() > MOST_RATIO && !effort.is_short();
-        // How hard they have to be, and how soft at least in the first round after shifts have changed.
+        // The softness that the masses ask for, and the least one for rounds whose shifts are new.
         let (hard, mut softest) = (soft, 0.0_f64);
         let hardest = (HARDEST * SHARE / self.ratio()).max(LEAST_SOFT);
         let (mut last, mut losses) = (f64::INFINITY, 0);
@@ -162,8 +163,8 @@ impl System {
             let Convex { shift, velocity, .. } = round;
             self.set(&free, &impulses);
             let residual = self.residual(targets);
-            // Impulses of velocities that are not the minimum's mean nothing: the same round on softer rows, and from what these lead to on harder ones
-            // again. The shifts stay as they are meanwhile, for what heavy bodies sink in on soft rows is no sliding.
+            // Impulses mean nothing where the minimum is not found. The same round is tried on softer rows, and from what that finds on harder ones
+            // again; meanwhile the shifts stay as they are, because bodies that sink into soft rows do not slide.
             let is_lost = is_uneven && !is_found && soft < MOST_SOFT;
             let is_on_way = is_uneven && is_found && soft > hard;
             losses += u32::from(!is_lost && !is_on_way);
@@ -174,7 +175,7 @@ impl System {
             tolerance = self.tolerance(accuracy);
             aim = aim_of(self);
             let stops = losses == effort.losses || effort.is_short() && residual > LITTLE * last;
-            // What moves may leave so much: it is worth a round that gains.
+            // Within the tolerance of moving bodies another round is worth it only if this one reduced the residual by much.
             let is_left = tolerance > accuracy.precision && residual <= tolerance && residual > GAINED * last;
             if residual <= aim || stops || is_left {
                 break;
@@ -195,8 +196,8 @@ impl System {
                 let own = |k: usize| of.natural_map(k, targets[k], shift[k]);
                 (0..targets.len()).map(own).fold(0.0, f64::max)
             };
-            // What yields creeps, which is no sliding: the shifts stay as they are until it does so no more. Rows of joints begin so hard that
-            // each round leaves next to nothing of it, and rounding would count on harder ones.
+            // Contacts that creep because rows yield do not slide: the shifts stay as they are until rows are hard enough. Rows of joints begin so
+            // hard that they hardly yield, and on harder ones rounding would count.
             let may_harden = is_found && !effort.is_short() && !self.has_joints;
             if may_harden && yielded(self) > YIELDED * residual {
                 soft = (HARDER * soft).max(hardest);
@@ -210,7 +211,7 @@ impl System {
             let answer: Vec<f64> = self.blocks.iter().map(|block| slides(block, self)).collect();
             state = (impulses, anderson.next(&shift, answer), velocity);
         }
-        // What slips at the start may obey the law, too: it counts only where nothing else does.
+        // The impulses at the start may obey the law as well, but with contacts that slip: they count only where nothing else does.
         let best = best.filter(|best| best.0 <= tolerance.max(begun.0)).unwrap_or(begun);
         self.set(&free, &best.1);
         self.factor = Some(factor);

@@ -8,34 +8,35 @@ use super::sweeps::Pace;
 use super::system::System;
 use crate::moments::extreme_eigenvalues;
 use crate::velocity::Velocity;
+use core::ops::ControlFlow;
 use glam::DVec3;
 
-/// Moved bodies up to which they may stick however fast they are, where they are not some of many.
+/// Up to so many movable bodies, not among many others, contacts are tried as sticking ones however fast they slide.
 const COUPLE: usize = 4;
-/// Moved bodies up to which solutions are exact whatever the bodies do.
+/// Up to so many solutions are exact, whatever the bodies do.
 const FEW: usize = 20;
-/// And up to which what is jammed may stick as it comes to rest.
+/// Up to so many jammed bodies that come to rest are tried with sticking contacts.
 const SOME: usize = 64;
-/// Contacts up to which solutions are exact where bodies are about to rest: what sweeps leave at each level of a pile adds up to its top.
+/// Up to so many contacts bodies that come to rest are solved exactly: errors of sweeps add up from level to level of a pile.
 const SETTLING: usize = 1 << 14;
-/// Sweeps at most, where they come first, and where they come last.
+/// The most sweeps where they come first, and where they come last.
 const FIRST: u32 = 192;
 const SWEEPS: u32 = 60;
-/// How much more may be left of several bodies that move, and of a crowd.
+/// The residual may be so many times the tolerance for several moving bodies, and for a crowd.
 const SEVERAL: f64 = 4.0;
 const CROWDED: f64 = 16.0;
-/// The cosine between normals from which on they push from opposite sides: of three that push from all sides of a plane it is −1/2.
+/// Normals with a cosine below this push from opposite sides. (Three that push from all sides of a plane have −1/2.)
 const OPPOSITE: f64 = -0.25;
-/// How much faster than slow what follows a motion may be, to take along what it holds.
+/// A body that follows its motion may take others along by friction at up to this many times the slow speed.
 const TAKEN: f64 = 4.0;
-/// The part of the slow speed that no solution leaves where there is one.
+/// A residual above this part of the slow speed means that no impulses obey the law.
 pub(super) const GROSS: f64 = 0.25;
-/// And the parts of that and of the bodies' mean speed that sweeps may leave of a crowd: what closes so fast is an event of two bodies,
+/// Sweeps of a crowd may leave these parts of the slow speed and of the mean speed: a contact that closes so fast is an event of two bodies,
 /// which costs less than a direct solution of all.
 const SWEPT: f64 = 0.5;
 const OF_SPEED: f64 = 1.0 / 16.0;
-/// How many times what solutions of bodies that move may leave counts as a failure: only then others are tried, as a direct one of a crowd,
-/// which takes longer than sweeps and of twice as much rarely leaves less than half.
+/// A residual above this many times [`System::left`] is a failure, and other methods are tried: a direct solution of a crowd takes longer than sweeps, and
+/// of a residual twice as large as allowed it rarely leaves less than half.
 ///
 /// ```
 /// use d2m_contact::{Accuracy, ContactPoint, LEFT_OVER, Material, SolverBody, Start, System, Velocity};
@@ -49,18 +50,19 @@ const OF_SPEED: f64 = 1.0 / 16.0;
 /// assert!(residual <= LEFT_OVER * system.left(accuracy)); // it is no failure
 /// ```
 pub const LEFT_OVER: f64 = 2.0;
-/// The part of what an impulse changes a rate by that rounding leaves: few sums of values as large as that, each rounded by 2⁻⁵³ of it.
+/// Rounding of a rate, as a part of the largest change of it by an impulse: a few sums of such values, each rounded by 2⁻⁵³ of them.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
-/// The part of the slow speed below which bodies are about to rest.
+/// Bodies whose mean speed is below this part of the slow speed come to rest.
 const CALM: f64 = 0.25;
 
 impl System {
-    /// Finds impulses with which the rates of all contacts obey the law, above the targets; the residual that is left. Begins with the
-    /// impulses that there are.
+    /// Finds impulses with which the rates of all contacts obey the law, above these targets (one for each contact; −∞: none), beginning with
+    /// the impulses that there are. Returns the residual that is left.
     ///
-    /// Few bodies, and masses far apart, are solved directly and exactly, many such bodies that move as well as others; what could stick so that it does. Of crowds sweeps come first, which
-    /// cost least, unless they stand in a row. What they leave is solved directly with soft rows, which gains most where most slides; of those about to rest
-    /// exactly, of many first as if nothing slid. Where that leaves more than the tolerance sweeps are tried again, and the best by the residual is taken.
+    /// Which method comes when: crowds of like masses are swept first, which costs least; what sweeps leave of moving bodies is solved
+    /// directly on soft rows. Few bodies, masses far apart, joints, bodies that come to rest and bodies in a row are solved directly and
+    /// exactly; many that come to rest are first tried as if all contacts stuck. Where that leaves more than the tolerance plain sweeps
+    /// follow, and of all results the one with the smallest residual is taken. The numbers are those of `docs/theory/dynamics.md`.
     ///
     /// ```
     /// use d2m_contact::{Accuracy, ContactPoint, Material, SolverBody, Start, System, Velocity};
@@ -88,54 +90,81 @@ impl System {
         {
             return residual;
         }
-        let (moved, mut residual) = (self.moved(), self.residual(targets));
+        let residual = self.residual(targets);
         if accuracy.still.is_some_and(|still| residual <= still) {
             return residual;
         }
-        let mut start = start;
-        if self.mass_ratio() <= MOST_RATIO && !self.has_joints {
-            if self.is_crowd() {
-                residual = self.sweep_until(targets, accuracy, Pace::Conjugate, FIRST);
+        let has_like_masses = self.mass_ratio() <= MOST_RATIO && !self.has_joints;
+        let begun = if has_like_masses {
+            self.solve_roughly(targets, accuracy, start, residual)
+        } else {
+            ControlFlow::Continue((residual, start))
+        };
+        match begun {
+            ControlFlow::Break(residual) => residual,
+            ControlFlow::Continue((residual, _))
+                if self.is_uneven_crowd(accuracy) && residual <= self.enough(accuracy) =>
+            {
+                residual
             }
-            let could_stick = start == Start::Sticking && self.could_stick(accuracy);
-            let is_swept = accuracy.in_crowd()
-                && !could_stick
-                && !self.is_crowd()
-                && !self.is_long()
-                && (!self.is_calm(accuracy) || accuracy.still.is_some());
-            if is_swept {
-                residual = self.better(residual, 0.0, |system| {
-                    system.sweep_until(targets, accuracy, Pace::Conjugate, FIRST)
-                });
-            }
-            if accuracy.still.is_some() && residual <= self.aim(accuracy) {
-                return residual;
-            }
-            if moved > COUPLE && !self.is_calm(accuracy) && !could_stick && !self.is_long() {
-                if residual <= self.enough(accuracy).max(LEFT_OVER * self.swept(accuracy)) {
-                    return residual;
-                }
-                let short =
-                    |system: &mut Self| system.solve_direct(targets, accuracy, Start::Present, Effort::SHORT);
-                residual = self.better(residual, 0.0, short);
-                let most = if is_swept { CROWDED * self.tolerance(accuracy) } else { self.enough(accuracy) };
-                if residual <= most || self.is_crowd() {
-                    return residual;
-                }
-            }
-            if !could_stick {
-                if is_swept && residual <= self.enough(accuracy) {
-                    return residual;
-                }
-                start = Start::Present;
+            ControlFlow::Continue((residual, start)) => {
+                self.solve_exactly(targets, accuracy, start, residual)
             }
         }
-        if self.is_uneven_crowd(accuracy) && residual <= self.enough(accuracy) {
-            return residual;
+    }
+
+    /// What costs less than an exact solution and may be enough for bodies of like masses: sweeps, and a short direct solution of moving bodies.
+    /// Breaks with a residual that is small enough; continues with the residual and the start of the exact solution.
+    fn solve_roughly(
+        &mut self,
+        targets: &[f64],
+        accuracy: Accuracy,
+        start: Start,
+        mut residual: f64,
+    ) -> ControlFlow<f64, (f64, Start)> {
+        if self.is_crowd() {
+            residual = self.sweep_until(targets, accuracy, Pace::Conjugate, FIRST);
         }
-        // What slips may obey the law as well as what sticks.
+        let could_stick = start == Start::Sticking && self.could_stick(accuracy);
+        let is_swept = accuracy.in_crowd()
+            && !could_stick
+            && !self.is_crowd()
+            && !self.is_long()
+            && (!self.is_calm(accuracy) || accuracy.still.is_some());
+        if is_swept {
+            residual = self.better(residual, 0.0, |system| {
+                system.sweep_until(targets, accuracy, Pace::Conjugate, FIRST)
+            });
+        }
+        if accuracy.still.is_some() && residual <= self.aim(accuracy) {
+            return ControlFlow::Break(residual);
+        }
+        if self.moved() > COUPLE && !self.is_calm(accuracy) && !could_stick && !self.is_long() {
+            if residual <= self.enough(accuracy).max(LEFT_OVER * self.swept(accuracy)) {
+                return ControlFlow::Break(residual);
+            }
+            let short =
+                |system: &mut Self| system.solve_direct(targets, accuracy, Start::Present, Effort::SHORT);
+            residual = self.better(residual, 0.0, short);
+            let most = if is_swept { CROWDED * self.tolerance(accuracy) } else { self.enough(accuracy) };
+            if residual <= most || self.is_crowd() {
+                return ControlFlow::Break(residual);
+            }
+        }
+        if could_stick {
+            return ControlFlow::Continue((residual, start));
+        }
+        if is_swept && residual <= self.enough(accuracy) {
+            return ControlFlow::Break(residual);
+        }
+        ControlFlow::Continue((residual, Start::Present))
+    }
+
+    /// Direct solutions, with plain sweeps where these fail.
+    fn solve_exactly(&mut self, targets: &[f64], accuracy: Accuracy, start: Start, mut residual: f64) -> f64 {
+        // Impulses that slip may obey the law as well as those that stick: within the tolerance the new ones are taken.
         let tolerance = self.tolerance(accuracy);
-        let is_pile = start == Start::Present && moved > SOME && self.is_calm(accuracy);
+        let is_pile = start == Start::Present && self.moved() > SOME && self.is_calm(accuracy);
         if is_pile {
             residual = self.better(residual, tolerance, |system| {
                 system.solve_direct(targets, accuracy, Start::Stuck, Effort::STUCK)
@@ -155,14 +184,15 @@ impl System {
         if residual <= GROSS * accuracy.slow {
             return residual;
         }
-        // No velocities obey the law, as of a body that is crushed: the nearest ones may be as large as normals are askew. Sweeps bound them.
+        // No velocities obey the law, as when a body is crushed. Direct solutions may find large ones then, where normals are askew; sweeps from
+        // zero impulses stay bounded.
         let none = vec![[0.0; 3]; self.blocks.len()];
         self.set(&self.free(), &none);
         self.sweep_until(targets, accuracy, Pace::Steady, SWEEPS)
     }
 
-    /// What is aimed at: bodies at rest, whose errors add up from step to step, are solved far below the precision, one that moves alone to the
-    /// precision, as far as rounds gain much.
+    /// The residual that is aimed at. Bodies at rest, whose errors add up from step to step, are solved far below the precision where possible;
+    /// one that moves alone to the precision; others to the tolerance.
     pub(super) fn aim(&self, accuracy: Accuracy) -> f64 {
         let tolerance = self.tolerance(accuracy);
         let aim = if tolerance <= accuracy.precision {
@@ -175,13 +205,13 @@ impl System {
         aim.max(accuracy.still.filter(|_| accuracy.beside_sleepers).unwrap_or(0.0)).max(self.rounding())
     }
 
-    /// What rounding leaves of rates: impulses change those of a light body between heavy ones by far more than it moves.
+    /// Rounding of the rates: between heavy bodies the impulses change the rates of a light one by far more than it moves.
     fn rounding(&self) -> f64 {
         let change = |(block, impulse): (&Block, &[f64; 3])| block.scale * impulse[0].abs();
         ROUNDED * self.blocks.iter().zip(&self.impulses).map(change).fold(0.0, f64::max)
     }
 
-    /// What need not be solved any better.
+    /// A residual that is small enough.
     pub(super) fn enough(&self, accuracy: Accuracy) -> f64 {
         let (tolerance, moved) = (self.tolerance(accuracy), self.moved());
         let is_exact = self.has_joints || self.is_calm(accuracy);
@@ -201,27 +231,27 @@ impl System {
         is_uneven && accuracy.in_crowd() && self.is_crowd() && !self.is_calm(accuracy)
     }
 
-    /// What solutions of bodies that move may leave.
+    /// The residual that solutions of moving bodies may leave.
     #[must_use]
     pub fn left(&self, accuracy: Accuracy) -> f64 {
         self.enough(accuracy).max(self.swept(accuracy))
     }
 
-    /// What sweeps may leave of a crowd.
+    /// The residual that sweeps of a crowd may leave.
     fn swept(&self, accuracy: Accuracy) -> f64 {
         let may_sweep =
             accuracy.in_crowd() && !self.is_long() && (self.is_crowd() || !self.is_calm(accuracy));
         if may_sweep { (SWEPT * accuracy.slow).min(OF_SPEED * self.mean_speed()) } else { 0.0 }
     }
 
-    /// Are the bodies about to rest, all that contacts connect, and not too many to be solved exactly?
+    /// Do the bodies come to rest, all of those that contacts connect, and are they few enough for an exact solution?
     fn is_calm(&self, accuracy: Accuracy) -> bool {
         let is_small = self.moved() <= SOME || !accuracy.beside_sleepers && self.blocks.len() <= SETTLING;
         accuracy.company != Company::Heap && is_small && self.mean_speed() <= CALM * accuracy.slow
     }
 
-    /// Does something slide so slowly that it might as well stick, where bodies are jammed? What follows a motion may take along what it
-    /// does not press on yet, and faster; of a crowd sweeps find what holds, and where it jams there is nothing to be found.
+    /// Are bodies jammed with a contact that slides so slowly that it might as well stick? A body that follows its motion may also take along, and
+    /// at higher speeds, what it does not press on yet. In crowds sweeps come first.
     fn could_stick(&self, accuracy: Accuracy) -> bool {
         let is_driven = |body: &SolverBody| body.inverse_mass == 0.0 && body.velocity != Velocity::default();
         let drives = !accuracy.in_crowd() && self.moved() <= FEW && self.bodies.iter().any(is_driven);
@@ -234,7 +264,7 @@ impl System {
         }
         let (tolerance, most) = (self.tolerance(accuracy), if drives { TAKEN } else { 1.0 } * accuracy.slow);
         let presses = |impulse: &[f64; 3]| drives || impulse[0] > 0.0;
-        // With the impulses of the step before, which may have been others, and without.
+        // With the impulses of the last step, and without any: both count, since the new ones may be others.
         let free = self.free();
         let creeps = |(block, impulse): (&Block, &[f64; 3])| {
             let is_slow = |[_, t, u]: [f64; 3]| {
@@ -249,7 +279,7 @@ impl System {
         creep() && self.is_jammed(presses)
     }
 
-    /// Is a body pressed on from opposite sides? Only then can it be held by more than what presses anyway.
+    /// Is a body pressed on from opposite sides? Only such a body can be held by more than its load.
     fn is_jammed(&self, presses: impl Fn(&[f64; 3]) -> bool) -> bool {
         let mut pressed = vec![Vec::new(); self.bodies.len()];
         for (block, _) in self.blocks.iter().zip(&self.impulses).filter(|(_, impulse)| presses(impulse)) {
@@ -264,10 +294,11 @@ impl System {
         pressed.iter().any(|normals| opposite(normals))
     }
 
-    /// What may be left of these bodies at the speeds that they have.
+    /// The residual that these bodies may have at their speeds.
     #[must_use]
     pub fn tolerance(&self, accuracy: Accuracy) -> f64 {
-        // Of a light body that moves fast between heavy ones at rest no part may be left of these. Joints are solved far below that anyway.
+        // The mean by mass counts, too: heavy bodies at rest have no error because a light one between them moves fast. Joints are solved far below
+        // that anyway.
         let speed = self.mean_speed();
         let speed = if self.has_joints {
             speed
@@ -277,7 +308,7 @@ impl System {
         (accuracy.relative * speed).min(LOOSE * accuracy.precision).max(accuracy.precision)
     }
 
-    /// Of the moved bodies' surfaces where they touch, in the quadratic mean.
+    /// The quadratic mean of the speeds of the movable bodies, each where it touches.
     #[must_use]
     pub fn mean_speed(&self) -> f64 {
         self.mean_speed_by(|_| 1.0)
@@ -292,7 +323,7 @@ impl System {
         if sum > 0.0 { (square / sum).sqrt() } else { 0.0 }
     }
 
-    /// Goes on, unless that ends with a residual that is larger, and not within the tolerance either.
+    /// Applies a method, and takes it back if its residual is larger than before and exceeds the tolerance.
     fn better(&mut self, residual: f64, tolerance: f64, go_on: impl FnOnce(&mut Self) -> f64) -> f64 {
         let begun = self.present();
         let other = go_on(self);

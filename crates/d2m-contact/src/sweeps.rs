@@ -1,4 +1,4 @@
-//! Projected Gauss–Seidel: block after block, each with the velocities that the ones before left.
+//! Projected Gauss–Seidel: one block after the other, each with the velocities that the blocks before it have left.
 
 use super::accuracy::{Accuracy, Company};
 use super::lanes::{Descent, Ends, Off, Wide};
@@ -7,14 +7,14 @@ use super::system::System;
 /// How sweeps follow each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pace {
-    /// One after the other.
+    /// Plain sweeps.
     Steady,
-    /// Each two go on along the way of those before.
+    /// After each two sweeps a step along the direction of the steps before, as conjugate gradients make it.
     Conjugate,
 }
 
 impl System {
-    /// Sweeps over all blocks until the residual is no more than what may be left, so many at most; the residual.
+    /// Sweeps over all blocks until the residual is small enough, `most` times at most. Returns the residual.
     pub(super) fn sweep_until(&mut self, targets: &[f64], accuracy: Accuracy, pace: Pace, most: u32) -> f64 {
         let mut wide = self.wide.take().unwrap_or_else(|| Wide::new(&self.bodies, &self.blocks));
         wide.fill(self.numbers(targets));
@@ -32,7 +32,7 @@ impl System {
                 wide.keep(&mut kept);
             }
         }
-        // What goes on along a way may be further off for a while.
+        // Along a conjugate direction the residual may grow for a while.
         if off.most > best && !self.is_swept(off, accuracy) {
             wide.take_back(kept);
         }
@@ -42,8 +42,8 @@ impl System {
         self.residual(targets)
     }
 
-    /// May so much be left? Of crowds single blocks may be further from their law than all together. Where something is solved again nothing
-    /// that is left may end its flight: that event would find all others solved, and sweep no more than this solution.
+    /// Is the residual small enough? In crowds single blocks may have larger ones if the quadratic mean is small. In a [`Company::Heap`] no contact may
+    /// close so fast that it ends its flight: that event would solve the same bodies again, no better than now.
     fn is_swept(&self, off: Off, accuracy: Accuracy) -> bool {
         let enough = self.enough(accuracy);
         let may_be_left = || off.most <= self.left(accuracy) && off.mean <= MEAN * enough;
@@ -52,10 +52,10 @@ impl System {
     }
 }
 
-/// Sweeps after which the residual is judged, which costs about as much as one; even.
+/// The residual is computed after this many sweeps, an even number; it costs about as much as one of them.
 const BETWEEN: u32 = 6;
-/// The part of what may be left of a block that may be left of a crowd in the quadratic mean: a half leads to twice as many contacts that
-/// are expected afterwards, an eighth takes longer than it saves.
+/// The quadratic mean of a crowd's residuals may be this part of what a single one may be. With a half twice as many contacts are expected
+/// afterwards; an eighth takes longer than it saves.
 const MEAN: f64 = 0.25;
 #[cfg(test)]
 pub(super) mod tests {

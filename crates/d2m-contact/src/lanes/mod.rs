@@ -1,8 +1,8 @@
-//! The blocks of a system side by side: four pairs of bodies at a time, so that sweeps do four blocks with one instruction.
+//! The blocks of a system arranged for vector instructions: a batch holds four pairs of bodies, and a sweep relaxes four blocks at once.
 //!
-//! Lanes of a batch share no body that impulses move, and what shares one keeps its order. So sweeps are those of Gauss and Seidel, one block
-//! after the other, to the last bit. Most batches share nothing with the next one either: the processor need not wait for one to begin it.
-//! The instructions are chosen when the program runs, and all give the same bits.
+//! The pairs of a batch share no movable body, and pairs that share one keep their order. So a sweep equals Gauss–Seidel, one block after the
+//! other, to the last bit. Most batches share no body with the next one either, so that the processor need not wait for its results.
+//! The instructions are chosen when the program runs, and all of them give the same bits.
 
 mod batch;
 mod cones;
@@ -21,7 +21,7 @@ pub(super) use group::Numbers;
 use group::{Group, layers};
 use lines::Lines;
 
-/// Sweeps go forth and back by turns: what one carries to the top of a pile the next one carries to its ground.
+/// Sweeps alternate in direction: one carries changes to the top of a pile, the next one to the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Order {
     Forth,
@@ -51,25 +51,25 @@ pub(super) struct Off {
     pub(super) has_room: bool,
 }
 
-/// Where sweeps that go on along a way begin a new one.
+/// When a conjugate direction is given up for a new one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ends {
-    /// As soon as what two sweeps change has grown: what is at rest, or begins to move, is solved best so.
+    /// As soon as two sweeps change more than the two before: best for bodies at rest, or that begin to move.
     Grown,
-    /// Where that points against the way (O'Donoghue and Candès 2015): of a large pile that moves it has grown every few sweeps, and the way is
-    /// still a good one.
+    /// When the change by two sweeps points against the direction (O'Donoghue and Candès 2015). In a large moving pile changes grow every few
+    /// sweeps, while the direction is still a good one.
     Back,
 }
 
-/// The way on which sweeps go on: nonsmooth nonlinear conjugate gradients (Silcowitz-Hansen, Niebe and Erleben 2010). What two sweeps, forth and
-/// back, change is the direction of descent; after it the impulses go on along the way of before, the less the more the change has
-/// shrunk, and begin a new way where it [`Ends`]. A crowd takes about a third of the sweeps.
+/// Nonsmooth nonlinear conjugate gradients (Silcowitz-Hansen, Niebe and Erleben 2010). The change by two sweeps, one in each direction, takes the
+/// place of the negative gradient. After it the impulses make a step along the last direction (the *way*), weighted by the ratio of the
+/// squares of this change and the last one, until the way [`Ends`]. A crowd takes about a third of the sweeps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Descent {
     ends: Ends,
     /// The sum of the squares of what the last two sweeps changed, each as energy.
     square: f64,
-    /// Is there a way of before?
+    /// Is there a last direction?
     has_way: bool,
 }
 
@@ -93,7 +93,7 @@ impl Wide {
         self.lines.fill(numbers);
     }
 
-    /// So many times two sweeps, forth and back; how far blocks are from their law then.
+    /// Makes two sweeps, one in each direction, `twice` times. Returns the residuals.
     pub(super) fn sweep(&mut self, twice: u32, descent: Option<&mut Descent>) -> Off {
         run(Round { wide: self, descent, twice })
     }
@@ -102,7 +102,7 @@ impl Wide {
         (self.velocities.clone(), self.cones.impulses.clone(), self.lines.impulses.clone())
     }
 
-    /// The same in place of what has been kept of it before.
+    /// Overwrites what was kept before.
     pub(super) fn keep(&self, (velocities, cones, lines): &mut Kept) {
         velocities.copy_from_slice(&self.velocities);
         cones.copy_from_slice(&self.cones.impulses);
