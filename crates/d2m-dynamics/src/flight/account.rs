@@ -1,7 +1,8 @@
-//! The account of energy: how far the energy of a body is above the least value that it had before.
+//! The energy account of a body: how far its energy is above the least value that it had before.
 //!
-//! Three things change the sum of kinetic and potential energy, all of which are entered in the accounts. As a body moves on,
-//! its account is not below zero (before that, impulses of the same instant may be taken back):
+//! Three things change the sum of kinetic and potential energy, and all of them are entered in the accounts.
+//! When a body moves on, a negative account is set to zero (before that, impulses of the same instant may be
+//! taken back):
 //!
 //! ```text
 //! an impulse J on the momentum p        J·(2p + J)/2m
@@ -9,58 +10,60 @@
 //! sleep                               the energy of the momenta is lost
 //! ```
 //!
-//! An account may hold what time stepping needs (its limit): a body that rests has the momentum −F h/2 at the start of a step
-//! and F h/2 at its end, which has the energy W = (F h)²/8m; and it may be lifted by a gap. What an island's solution would add to
-//! more than that is taken from the velocities of its bodies against each other, until they move as one rigid body.
+//! An account may hold what time stepping needs, its limit. A body at rest has the momentum −F h/2 at the
+//! start of a step and F h/2 at its end, with the energy W = (F h)²/8m; and it may be lifted by a gap. Where
+//! the solution of an island would exceed the limits, its bodies' velocities against each other are reduced
+//! (braked), down to zero, where they move as one rigid body.
 //!
-//! Then no account holds more than its limit and W. For among all momenta of an island with the same sums the rigid motion has the
-//! least energy, and contacts change no sum of an island by itself: fully braked, such an island gains nothing. One that is
-//! anchored to a static body stands still then, and its momenta have the energy W. Flights that make room are entered before they
-//! begin. (Not counted: the energy of the rotation of bodies that tumble, which the midpoint rule keeps but for an oscillation,
-//! and what bodies that follow their motions do.)
+//! Then no account holds more than its limit and W. For among all momenta of an island with the same sums the
+//! rigid motion has the least energy, and contacts alone do not change these sums: fully braked, an island
+//! that touches nothing else gains nothing. One that is anchored to a static body stands still then, and its
+//! momenta have the energy W. Flights that make room are entered before they begin. (Not counted: the energy
+//! of rotation of bodies that tumble, which the midpoint rule keeps but for an oscillation, and the work of
+//! kinematic bodies.)
 
 use core::ops::Neg;
 use d2m_contact::{Momenta, Velocity};
 use glam::{DMat3, DVec3};
 
-/// Relative rounding of an energy: differences of sums of fewer than 2¹² products, of 2⁻⁵³ each.
+/// The relative rounding of an energy: differences of sums of fewer than 2¹² products, of 2⁻⁵³ each.
 const ROUNDING: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// The part of the room that is made in any case: without it a pair that has lost its separation would never get it back. It lifts
-/// bodies by no more than the gaps that are missing.
+/// The part of the room that is made in any case. Without it a pair that has lost its distance would never
+/// get it back. It lifts bodies by no more than the gaps that are missing.
 const LEAST_PART: f64 = 0.25;
 
 /// A body of an island whose velocities have been solved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
     pub(crate) mass: f64,
-    /// At the instant of the solution, world axes.
+    /// In world axes, at the instant of the solution.
     pub(crate) inertia: DMat3,
     pub(crate) inverse_inertia: DMat3,
     pub(crate) position: DVec3,
-    /// Of gravity and the user.
+    /// The force of gravity and of the user.
     pub(crate) force: DVec3,
     pub(crate) torque: DVec3,
-    /// What the body's account holds, and what it may hold.
+    /// What the account of the body holds, and its limit.
     pub(crate) gained: f64,
     pub(crate) limit: f64,
-    /// Without and with the impulses.
+    /// The momenta without and with the impulses.
     pub(crate) before: Momenta,
     pub(crate) after: Momenta,
-    /// After how much time of the forces the momenta have the velocity of the flight.
+    /// The time for which forces act until the momenta have the velocity of the flight.
     pub(crate) lead: f64,
-    /// What is added to that to make room, in this flight alone.
+    /// The velocity that is added to make room, in this flight alone.
     pub(crate) room: Velocity,
 }
 
-/// How an island's solution is changed so that its accounts hold.
+/// How an island's solution is changed so that its accounts keep their limits.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Balance {
-    /// What is added to the velocity of each body; none: nothing.
+    /// The velocity that is added to that of each body; none: all are zero.
     pub(crate) braking: Option<Vec<Velocity>>,
     /// The part of the room that is made.
     pub(crate) part: f64,
-    /// In the accounts, of all bodies together, before this flight; and what they may hold.
+    /// What the accounts of all bodies hold together before this flight, and their limit.
     pub(crate) gained: f64,
     pub(crate) limit: f64,
 }
@@ -70,22 +73,23 @@ impl Entry {
         0.5 * (p.linear.length_squared() / self.mass + p.angular.dot(self.inverse_inertia * p.angular))
     }
 
-    /// The energy that making room adds in a flight of length `h`.
+    /// The energy that the velocity for room adds in a flight of length `h`.
     fn lift(&self, h: f64) -> f64 {
         -(self.force.dot(self.room.linear) + self.torque.dot(self.room.angular)) * h
     }
 }
 
-/// What an island's bodies are braked against.
+/// Against what the velocities of an island's bodies are braked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Anchor {
-    /// Each other.
+    /// Against each other.
     Bodies,
-    /// What impulses do not move, at rest.
+    /// Against bodies at rest that impulses do not move.
     World,
 }
 
-/// What each velocity lacks to that of one rigid body with the same momenta; of a body at rest if the island is anchored to the world.
+/// The difference of each velocity to that of one rigid body with the same momenta; to zero if the island is
+/// anchored to the world.
 fn towards_rigid(entries: &[Entry], anchor: Anchor) -> Vec<Velocity> {
     let velocity = |e: &Entry| Velocity {
         linear: (e.after.linear + e.force * e.lead) / e.mass,
@@ -110,8 +114,8 @@ fn towards_rigid(entries: &[Entry], anchor: Anchor) -> Vec<Velocity> {
     entries.iter().zip(velocities).map(|(e, v)| rigid(e) - v).collect()
 }
 
-/// Takes the least part of the velocities against each other, or against what the island is anchored to, that leaves no more
-/// in the accounts than they may hold, and where that is not enough of the room that is made. `length`: of the flight.
+/// Brakes the velocities against each other, or against the anchor, by the least part with which the accounts
+/// keep their limit. Where that is not enough, only a part of the room is made. `length`: of the flight.
 pub(crate) fn balance(entries: &[Entry], anchor: Anchor, length: f64) -> Balance {
     let sum = |value: &dyn Fn(&Entry) -> f64| entries.iter().map(value).sum::<f64>();
     let (before, after) = (sum(&|e| e.kinetic(&e.before)), sum(&|e| e.kinetic(&e.after)));
@@ -124,7 +128,7 @@ pub(crate) fn balance(entries: &[Entry], anchor: Anchor, length: f64) -> Balance
         return Balance { braking: None, part: 1.0, gained, limit };
     }
     let towards = towards_rigid(entries, anchor);
-    // A part s of the way adds s b + s² a.
+    // Braked by a part s of that, the energy grows by s b + s² a.
     let (mut a, mut b) = (0.0, 0.0);
     for (e, d) in entries.iter().zip(&towards) {
         let angular = e.inertia * d.angular;
@@ -213,7 +217,7 @@ mod tests {
         }
     }
 
-    /// What an account holds is paid back before anything else is gained.
+    /// An account above its limit is paid back before anything else is gained.
     #[test]
     fn accounts_are_paid_from_velocities_against_each_other() {
         let mut entries = pair(DVec3::ZERO);
@@ -224,7 +228,8 @@ mod tests {
         assert!((taken - 0.05).abs() < 1e-9 && (balance.gained - 0.1).abs() < 1e-9, "{taken}");
     }
 
-    /// A body that stands on the floor cannot pay for a lift: it is lifted by what its account may hold.
+    /// A body that stands on the floor cannot pay for a lift: it is lifted as far as the limit of its account
+    /// allows.
     #[test]
     fn room_is_made_as_far_as_the_account_goes() {
         let weight = DVec3::Y * -20.0;

@@ -1,4 +1,5 @@
-//! Velocities of the flights of one island until a given time: targets, solution, and where flights end, put right.
+//! The velocities of the flights of one island until a given time: their targets, their solution, and the
+//! corrections that lead flights to where they have to end.
 
 use crate::body::rigid_body::RigidBody;
 use crate::body::turning::Pull;
@@ -14,42 +15,46 @@ use d2m_contact::{
 use glam::{DMat3, DVec3};
 use std::borrow::Cow;
 
-/// Residuals below this part of a gap a step are those of a solution.
+/// A residual below this part of a gap a step is that of a solution.
 const PRECISION: f64 = 1e-5;
-/// The part of that which is aimed at.
+/// The part of that precision that is aimed at.
 const AIM: f64 = 1e-3;
-/// And of crowds, and of what lies beside bodies that sleep, a speed, of the gap in a unit of time: a tenth of that of quiet bodies.
+/// Crowds, and bodies beside sleeping ones, may keep a residual of this times the gap in a unit of time: a
+/// tenth of the speed of quiet bodies.
 const STILL: f64 = 0.05;
-/// Of bodies that move, this part of their speed, too.
+/// Moving bodies may also leave this part of their speed.
 const RELATIVE: f64 = 1.0 / 1024.0;
-/// Where contacts share what room is left, so much less: what is left of solutions is taken from the same contacts again and again.
+/// Where contacts share the room that is left, the relative residual is smaller by this factor: the residual
+/// is taken from the room of the same contacts again and again.
 const SHARED: f64 = 1.0 / 64.0;
-/// The part of a gap a step that the ends of flights may be off what joints ask for: what is more is not corrected but diverges, as where the
-/// end of a long chain whips round, and shorter flights are solved for.
+/// Flights may end off their joints by this part of a gap a step. A larger error is not corrected but
+/// diverges, as where the end of a long chain whips round, and shorter flights are solved for.
 const OFF_JOINT: f64 = 1e-2;
-/// Solutions with the spin of the flight's middle put right.
+/// The most solutions with the spin of the middle of the flight corrected.
 const CORRECTIONS: u32 = 3;
-/// Of crowds, whose solutions are less exact than that.
+/// The most for crowds, whose solutions are less exact than that.
 const CROWD_CORRECTIONS: u32 = 1;
-/// And with the ends of jointed bodies' flights put right.
+/// The most where the ends of jointed bodies' flights are corrected, too.
 const JOINT_CORRECTIONS: u32 = 8;
-/// How many times further off than what is not corrected at all corrections are given up, which saves time where they diverge. Under brakes they may come
-/// back from there.
+/// Corrections are given up where joints are missed so many times as far as without any, which saves time
+/// where they diverge. With brakes they may come back from there.
 const FAR_OFF: f64 = 8.0;
-/// The part of a flight for which contacts with less than that keep some of it.
+/// Contacts with hardly any room left keep some for this part of a flight.
 const LASTING: f64 = 1.0 / 16.0;
-/// The part of what restores the gap that counts beforehand: where the law is not obeyed, nothing may be restored.
+/// The part of the rate that restores the gap that counts beforehand: where the law is not obeyed, nothing
+/// may be restored.
 const RESTORED: f64 = 1.0 / 16.0;
-/// How strong motors are where they stall, and then where no velocities are found with that: too strong for what is light among heavy bodies.
+/// How strong a motor that stalls is; the later values are tried where no velocities are found with the
+/// earlier ones, which are too strong for light bodies among heavy ones.
 const STRENGTHS: [f64; 4] = [16.0, 1.0 / 64.0, 1.0 / 65_536.0, 1.0 / 67_108_864.0];
-/// Is the turning of jointed bodies braked, where it is faster than flights?
+/// Is the rotation of jointed bodies braked where it oscillates faster than flights can follow?
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Brakes {
     None,
     OfOscillations,
 }
 
-/// Velocities for flights until `end`.
+/// A solution: velocities for flights until `end`.
 pub(crate) struct Attempt {
     pub(crate) span: Span,
     pub(crate) end: f64,
@@ -58,26 +63,26 @@ pub(crate) struct Attempt {
     pub(crate) found: Found,
 }
 
-/// What a solution has found.
+/// What the solution has found.
 #[derive(Clone)]
 pub(crate) struct Found {
-    /// Those that count, with their impulses.
+    /// The contacts that count, with their impulses.
     pub(crate) contacts: Vec<ContactPoint>,
-    /// Least rates of the contacts, and what impulses see to of that.
+    /// The least rates of the contacts in the flight, and those that impulses bring about.
     pub(crate) targets: Vec<f64>,
     pub(crate) pushing: Vec<f64>,
-    /// Of each member.
+    /// The pull on each member.
     pulled: Vec<Option<Pull>>,
     pub(crate) residual: f64,
-    /// How far joints are off what they ask for at the end, as a rate.
+    /// How far joints are off where flights end, as a rate.
     pub(crate) missed: f64,
-    /// Do corrections of that lead further off?
+    /// Do corrections make that larger?
     pub(crate) diverges: bool,
 }
 
 impl Attempt {
-    /// Takes a solution whose spins are not put right: corrections lead further off where impulses have bodies turn far in a flight, of the middle of
-    /// which nothing is known then, and each would make them faster.
+    /// Takes the first solution, whose spins are not corrected. Where impulses turn bodies far in a flight
+    /// nothing is known of its middle: corrections lead further off, and each would make the bodies faster.
     fn go_back(&mut self, solved: FirstSolved) {
         (self.found.residual, self.found.pulled) = (solved.residual, solved.pulled);
         self.system.bodies = solved.bodies;
@@ -91,17 +96,19 @@ impl Attempt {
         self.found.contacts.extend(couples(&self.system, members, &self.found.pulled));
     }
 
-    /// Velocities of flights that also restore the gap, or make room for rotation; what kinetic energy that adds. The contacts keep the impulses that
-    /// they have. None: there is nothing to restore, or no velocities are found that keep what room there is as long as the present ones do,
-    /// which stay then.
+    /// Solves the velocities of flights that also restore the gap, or make room for rotation, and returns the
+    /// kinetic energy that they add. The contacts keep their impulses. None, and the velocities stay: there
+    /// is nothing to restore, or no velocities are found that keep the remaining room for as long as the
+    /// present ones do.
     pub(crate) fn make_room(&mut self, inertia: &[(f64, DMat3)]) -> Option<f64> {
         if self.found.targets == self.found.pushing {
             return None;
         }
         let (begun, before) = (self.system.present(), self.system.doubled_energy(inertia));
         let could_last = self.may_last();
-        // What is left against the speed of a lift may be more than the closest contacts have: then as exactly as of bodies at rest, from the same
-        // beginning, since no round gains anything on a solution that is as good as it was to be.
+        // The residual, relative to the speed of a lift, may be more room than the closest contacts have.
+        // Then it is solved as exactly as for bodies at rest, from the same start: a solution that is as good
+        // as it had to be gains nothing by further rounds.
         for relative in [self.accuracy.relative, 0.0] {
             self.system.take_back(begun.clone());
             let accuracy = Accuracy { relative, ..self.accuracy };
@@ -120,19 +127,19 @@ impl Attempt {
         self.couple(members);
     }
 
-    /// The part of what restores the gap at a contact that makes up for what the velocities are off the law.
+    /// The part of the rate that restores the gap at a contact that may make up for a residual.
     fn restored(&self, contact: usize) -> f64 {
         RESTORED * (self.found.targets[contact] - self.found.pushing[contact])
     }
 
-    /// Do the contacts last, with some of what is still to be added to restore the gap?
+    /// Do contacts keep room, with some of the rate that is still to be added to restore the gap?
     pub(crate) fn may_last(&self) -> bool {
         self.lasts(|k| self.restored(k))
     }
 
-    /// Does each contact of which hardly any room is left keep some for a part of the flight that counts, if `added` is added to its rate?
-    /// Velocities that are off the law by little against what bodies do elsewhere may use up the last of the gap in no time, and their next
-    /// ones half of what is left then.
+    /// Does each contact with hardly any room left keep some for a part of the flight that counts, if `added`
+    /// is added to its rate? Velocities whose residual is small against the speeds of other bodies may use up
+    /// the last of the gap in no time, and the next ones half of what is left then.
     fn lasts(&self, added: impl Fn(usize) -> f64) -> bool {
         let length = LASTING * self.span.remaining;
         self.found.contacts.iter().enumerate().all(|(k, contact)| {
@@ -144,7 +151,8 @@ impl Attempt {
 }
 
 impl Problem<'_> {
-    /// With brakes on what oscillates fast; in closed chains, as most mechanisms are, only where flights would not meet their joints without.
+    /// With brakes on fast oscillations. Closed chains, as most mechanisms are, are braked only where flights
+    /// would not meet their joints otherwise.
     pub(crate) fn attempt(&self, now: f64, end: f64, room: Room) -> Attempt {
         let attempt = |brakes: Brakes| self.attempt_with(now, end, room, brakes);
         if !self.may_be_braked() {
@@ -179,7 +187,7 @@ impl Problem<'_> {
         let mut accuracy =
             Accuracy { precision, relative, aim: AIM, slow, company, still: None, beside_sleepers };
         let pushing: Vec<f64> = rows.iter().map(|row| row.pushing).collect();
-        // What a motor drives does not oscillate.
+        // Bodies that a motor drives do not oscillate.
         let mut spins: Vec<Option<DVec3>> = free.iter().map(|body| Some(body.velocity.angular)).collect();
         self.driven().for_each(|driven| spins[driven] = None);
         let velocities = |c: &ContactPoint| [c.a, c.b].map(|body| free[place(body)].velocity);
@@ -254,7 +262,8 @@ impl Problem<'_> {
             }
             system.renew();
         }
-        // Where no velocities lead to what joints ask for, as of a bridge without slack, corrections lead further and further off.
+        // Where no velocities lead to where joints ask for, as in a bridge without slack, each correction
+        // leads further off: the nearest one is taken.
         let gets_nearer =
             |found: &Found| found.missed < attempt.found.missed && attempt.found.missed > precision;
         if let Some((found, present)) = nearest.filter(|(found, _)| gets_nearer(found)) {
@@ -265,8 +274,9 @@ impl Problem<'_> {
         attempt
     }
 
-    /// No velocities obey contacts and a motor without a bound on its force that leads into them. Where none are found motors stall: they push with
-    /// [`STRENGTHS`] times, at most, what stops all bodies there are, with what forces add in a step, and brings them to a slow speed.
+    /// No velocities obey both contacts and a motor of unbounded force that leads into them. Where none are
+    /// found motors stall: the impulse of each is at most [`STRENGTHS`] times what stops all bodies, with
+    /// what forces add in a step, and brings them to a slow speed.
     fn stall_motors(&self, system: &mut System, found: &mut Found, accuracy: Accuracy) {
         let rows = || found.contacts.iter().enumerate().filter_map(|(k, c)| Some((k, c, c.row?)));
         if rows().count() == found.contacts.len() || !rows().any(|(.., row)| row.is_motor) {
@@ -299,12 +309,12 @@ impl Problem<'_> {
         }
     }
 
-    /// Are joints met at the end of a flight, and do they go less than half round in it?
+    /// Are joints met at the end of a flight, without going half round or more in it?
     pub(crate) fn is_met(&self, attempt: &Attempt) -> bool {
         self.ends_at_joints(attempt) && !self.turns_over(attempt)
     }
 
-    /// Are joints met at the end of a flight, by whichever way?
+    /// Are joints met at the end of a flight, however they got there?
     pub(crate) fn ends_at_joints(&self, attempt: &Attempt) -> bool {
         attempt.found.missed <= OFF_JOINT * self.speed()
     }
@@ -314,8 +324,8 @@ impl Problem<'_> {
         attempt.found.missed * attempt.span.remaining > self.options.gap || self.turns_over(attempt)
     }
 
-    /// Does a joint go round a center by half a turn or more in a flight? Then where the flight ends says no more which way that was: joints are met
-    /// there by any whole turns.
+    /// Does a joint go round a center by half a turn or more in a flight? Then the end of the flight says no
+    /// more which way it went: joints are met there after any number of whole turns.
     fn turns_over(&self, attempt: &Attempt) -> bool {
         let goes_round = |body: usize, arm: DVec3| {
             let spin = attempt.system.bodies[self.place(body)].velocity.angular;
@@ -326,17 +336,18 @@ impl Problem<'_> {
     }
 }
 
-/// A solution whose spins are not put right.
+/// A solution whose spins are not corrected.
 struct FirstSolved {
     residual: f64,
     pulled: Vec<Option<Pull>>,
     bodies: Vec<SolverBody>,
     present: Present,
-    /// By how much spins and angular momenta were off each other, as a speed.
+    /// By how much spins and angular momenta did not belong together, as a speed.
     off: f64,
 }
 
-/// The spins that belong to the angular momenta with the impulses, and by how much they were others, as a speed of the surface.
+/// Sets the spins that belong to the angular momenta with the impulses. Returns by how much they were others,
+/// as a speed of the surface.
 fn put_right(
     system: &mut System,
     states: &[Cow<'_, RigidBody>],

@@ -1,21 +1,24 @@
-//! What turns with what it lies on, as on a turntable.
+//! Bodies that turn with the body on which they lie, as on a turntable.
 
 use d2m_contact::{ContactPoint, Velocity};
 use glam::{DQuat, DVec3};
 
-/// What surfaces that run add to the rates along a contact's tangents, with what these are in the middle of a flight of this length, where both bodies
-/// turn about its normal the same way.
+/// The rates that are added along a contact's tangents: those of running surfaces, and, where both bodies
+/// turn about the normal the same way, the change of the rates from the start to the middle of a flight of
+/// this length.
 ///
-/// Centers fly straight in a flight. Along the tangent of their circle they would lead away from the axis, by (ω h)² r/2 in each
-/// flight, and what sticks would creep outward at ω² r h/2. Taken with the arms of the middle of the flight velocities are those of chords. Of the
-/// spins what both have in common about the normal counts: a ball that rolls turns about an axis in the surface, and its arm does not turn with it.
+/// Centers fly straight in a flight. Along the tangent of their circle they would move away from the axis, by
+/// (ω h)² r/2 in each flight, and a sticking body would creep outward at ω² r h/2. With the arms of the
+/// middle of the flight the velocities are those of chords. Only the spin about the normal that both have in
+/// common counts: a ball that rolls turns about an axis in the surface, and its arm does not turn with it.
 pub(crate) fn in_common_turn(contact: &ContactPoint, [a, b]: [Velocity; 2], length: f64) -> [f64; 2] {
     let [of_a, of_b] = [a, b].map(|velocity| velocity.angular.dot(contact.normal));
     if contact.row.is_some() || of_a * of_b <= 0.0 {
         return contact.running;
     }
     let common = if of_a.abs() < of_b.abs() { of_a } else { of_b };
-    // A turn by half of that in half of the flight, without functions that differ from platform to platform: by 2 atan(φ/2), not φ.
+    // A turn by half of that spin in half of the flight, without functions that differ from platform to
+    // platform: by 2 atan(φ/2), not φ.
     let half = contact.normal * (0.25 * common * length);
     let turn = DQuat::from_xyzw(half.x, half.y, half.z, 1.0).normalize();
     let changed = |velocity: Velocity, arm: DVec3| velocity.angular.cross(turn * arm - arm);
@@ -45,7 +48,7 @@ mod tests {
         };
         let middle = DQuat::from_rotation_y(0.5 * rate * length) * place;
         assert!(slides(spin.cross(middle)) < 1e-3 * slides(spin.cross(place)));
-        // What lies on something that stands still, or turns the other way, has the rates that it has.
+        // On a body that stands still, or turns the other way, the rates stay as they are.
         for angular in [DVec3::ZERO, -spin, DVec3::X * rate] {
             let other = Velocity { linear: DVec3::ZERO, angular };
             assert_eq!(in_common_turn(&turned, [table, other], length), [0.0; 2]);

@@ -1,4 +1,4 @@
-//! Bodies that are in contact with each other, and the velocities of their next flights.
+//! Islands: bodies that are in contact with each other, and the velocities of their next flights.
 
 use crate::SimulationOptions;
 use crate::body::rigid_body::RigidBody;
@@ -13,24 +13,24 @@ use d2m_mesh::DisjointSets;
 use glam::DMat3;
 use std::borrow::Cow;
 
-/// Bodies of a simulation from which on they are a crowd.
+/// From this number of bodies on a simulation is a crowd.
 pub(crate) const CROWD: usize = 64;
-/// The contacts of bodies that impulses connect, bodies by their numbers.
+/// The contacts of one island: bodies that impulses connect, named by their numbers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Island<'c> {
     pub(crate) contacts: Vec<&'c ContactPoint>,
 }
 
-/// What an island's bodies get: velocities of the next flight and additions to the momenta.
+/// The solution of an island: velocities of the next flights and additions to the momenta.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Solved {
     pub(crate) bodies: Vec<Push>,
-    /// Impulses of restitution, of resting contact.
+    /// The impulses of restitution, and those of resting contact.
     pub(crate) impacts: Vec<ContactPoint>,
     pub(crate) rests: Vec<ContactPoint>,
-    /// How far the rates are from what the law of contacts asks for.
+    /// The residual: how far the rates are from the law of contact.
     pub(crate) residual: f64,
-    /// Joints are torn by more than a gap, in flights as short as they may be.
+    /// Joints are torn by more than a gap, even in the shortest flights.
     pub(crate) is_torn: bool,
 }
 
@@ -40,14 +40,15 @@ pub(crate) struct Push {
     pub(crate) velocity: Velocity,
     pub(crate) horizon: f64,
     pub(crate) lead: f64,
-    /// By impacts, and by contacts at rest.
+    /// The momenta that impacts add, and those that resting contacts add.
     pub(crate) impact: Momenta,
     pub(crate) rest: Momenta,
-    /// What the account of energy holds after that.
+    /// The balance of the body's energy account afterwards.
     pub(crate) gained: f64,
 }
 
-/// The islands of some contacts: bodies that impulses move connect, the others do not. In the order of their first contact.
+/// The islands of these contacts, in the order of their first contact. Only bodies that impulses move connect
+/// others.
 pub(crate) fn islands<'c>(bodies: &[RigidBody], contacts: Vec<&'c ContactPoint>) -> Vec<Island<'c>> {
     let mut joined = DisjointSets::new(bodies.len());
     let moves = |i: usize| moves(&bodies[i]);
@@ -77,7 +78,8 @@ pub(crate) fn islands<'c>(bodies: &[RigidBody], contacts: Vec<&'c ContactPoint>)
     found
 }
 
-/// Impacts, then the velocities of the flights that begin now. The contacts' impulses are where the iteration begins.
+/// Solves the impacts of an island, then the velocities of the flights that begin now. The solver starts with
+/// the impulses of the contacts.
 pub(crate) fn solve(
     bodies: &[RigidBody],
     island: &Island<'_>,
@@ -104,29 +106,32 @@ pub(crate) fn solve(
     let (end, residual) = (attempt.end, attempt.found.residual);
     let is_torn = problem.is_torn(&attempt);
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
-    // Springs and motors may work; what joints alone do is balanced by the middle of flights, not by accounts.
+    // Springs and motors may do work. The work of joints alone is balanced by the midpoint rule, not by
+    // accounts.
     let driven = states.iter().any(|s| !moves(s) && !s.stands_still())
         || island.contacts.iter().any(|c| c.row.is_some() || c.running != [0.0; 2]);
     let mut rests = vec![Momenta::default(); members.len()];
     add_impulses(&attempt.found.contacts, &mut rests, place);
-    // What restores the gap, or makes room for rotation, moves the bodies in this flight and leaves no momentum.
+    // The velocity that restores the gap, or makes room for rotation, acts in this flight and leaves no
+    // momentum.
     let velocities = |system: &System| system.bodies.iter().map(|body| body.velocity).collect::<Vec<_>>();
     let mut physical = velocities(&attempt.system);
     let span = attempt.span;
     if let Some(gained) = attempt.make_room(&inertia) {
-        // What an account may hold, and the energy of the speed that makes a gap in a step.
+        // What accounts may hold, and the energy of the speed that covers a gap in a step.
         let speed = options.gap / options.step;
         let held = |s: &Cow<'_, RigidBody>| {
             s.energy_limit(options.gravity, options.step, options.gap) + 0.5 * s.mass * speed * speed
         };
         let most: f64 = states.iter().filter(|s| moves(s)).map(held).sum();
         if !problem.ends_with_energy_of_turning(&attempt) {
-            // The momenta of a thin body would have another energy where it makes room: shorter flights will.
+            // Room would turn a thin body so far that its momenta had another energy: shorter flights will
+            // make it.
             for (body, velocity) in attempt.system.bodies.iter_mut().zip(&physical) {
                 body.velocity = *velocity;
             }
         } else if gained.abs() > most {
-            // Then it is made by impulses like others, and the account sees to their energy.
+            // Then impulses make the room, as other impulses do, and the account sees to their energy.
             attempt.store(&members);
             rests.fill(Momenta::default());
             add_impulses(&attempt.found.contacts, &mut rests, place);
@@ -145,7 +150,7 @@ pub(crate) fn solve(
         lead: states[k].lead.unwrap_or(0.5 * span.remaining),
     };
     let outcomes: Vec<Outcome<'_>> = (0..states.len()).filter(|&k| moves(&states[k])).map(outcome).collect();
-    // Bodies that follow their motions may work.
+    // Kinematic bodies may do work.
     let anchor = match (driven, outcomes.len() < states.len()) {
         (true, _) => None,
         (false, true) => Some(Anchor::World),
@@ -155,14 +160,14 @@ pub(crate) fn solve(
     Solved { bodies, impacts: hits, rests: attempt.found.contacts, residual, is_torn }
 }
 
-/// Impulses of restitution, and what they add to the momenta of each body.
+/// The impulses of restitution, and what they add to the momenta of each body.
 struct Impacts {
     contacts: Vec<ContactPoint>,
     momenta: Vec<Momenta>,
 }
 
-/// The impacts at the contacts of an island that bounce and have been hit, while the equations of its joints hold: what these do to bodies
-/// that bounce keeps energy then, as the rod of a pendulum does.
+/// The impacts at the contacts of an island that bounce and have been hit, solved with the equations of its
+/// joints. So joints pass impacts on without a loss of energy, as the rod of a pendulum does.
 fn impacts_of(
     states: &[Cow<'_, RigidBody>],
     island: &Island<'_>,
@@ -188,12 +193,12 @@ fn impacts_of(
     Impacts { contacts, momenta }
 }
 
-/// What the solution of an island makes of one of its bodies.
+/// The solution of an island for one of its bodies.
 struct Outcome<'s> {
     body: usize,
-    /// With the impacts.
+    /// The body with the impacts.
     state: &'s RigidBody,
-    /// World axes.
+    /// In world axes.
     inertia: DMat3,
     before: Momenta,
     impact: Momenta,
@@ -204,7 +209,8 @@ struct Outcome<'s> {
     lead: f64,
 }
 
-/// Balances the accounts of energy, where nothing works (`anchor`): the velocities of the flights until `end`.
+/// Balances the energy accounts where nothing else does work (`anchor`). Returns the velocities of the
+/// flights until `end`.
 fn settle(
     outcomes: &[Outcome<'_>],
     anchor: Option<Anchor>,

@@ -1,4 +1,5 @@
-//! How long the flights of an island are: until when velocities can be solved for, and what gives way where there are none.
+//! How long the flights of an island are. A flight is a motion of constant velocities between two events; it
+//! ends where no velocities can be solved for any further. Where there are none at all, contacts give way.
 
 use crate::body::rigid_body::RigidBody;
 use crate::flight::attempt::{Attempt, Brakes};
@@ -13,35 +14,41 @@ use d2m_contact::{Company, ContactPoint, LEFT_OVER, Velocity};
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// Moved bodies of an island from which on it flies to the end of the step however its bodies tumble.
+/// An island with more moving bodies than this flies to the end of the step, however its bodies tumble.
 const MANY: usize = 20;
-/// The square of the angle by which an oscillation leads in a flight, from which on flights make more of it: where impulses act at their starts.
+/// The square of the angle by which an oscillation advances in a flight, (ω h)². From here on flights amplify
+/// it, since impulses act at their starts.
 const UNSTABLE: f64 = 4.0;
-/// The part of the energy that flights gain which flights of half the length may gain: one quarter is due.
+/// Flights of half the length gain a quarter of the energy if joints are the cause. If they gain more than
+/// this part of it, something else is, and flights are not shortened any more.
 const LESS: f64 = 0.5;
-/// Halvings of such flights.
+/// The most halvings of flights whose joints are not met at the end, or which gain energy.
 const MOST_HALVINGS: u32 = 6;
-/// Such flights in a step at most, as many as those of a body that follows its motion.
+/// The most such flights in a step: as many as a kinematic body may have.
 const MOST_FLIGHTS: f64 = 4096.0;
-/// And of unlike bodies that snap taut: light ones take up the energy of heavy ones there, for which no flight is short enough.
+/// The most where joints of unlike masses snap taut: light bodies take up the energy of heavy ones there, for
+/// which no flight is short enough.
 const MOST_OF_A_SNAP: f64 = 16.0;
-/// The part of the rate at which something closes in, and how much more than solutions leave anyway, from which on no velocities obey the law.
+/// No velocities obey the law where the residual is above this part of the rate at which a kinematic body
+/// closes in, and above [`LEFT_OVER`] times what solutions leave anyway.
 const UNSOLVED: f64 = 1.0 / 8.0;
-/// The part of that rate from which on friction holds what would slip.
+/// From this part of that rate on, a residual means that friction holds contacts that would slip otherwise.
 const LOCKED: f64 = 0.5;
-/// The part of the bodies' speed that solutions may leave in any case.
+/// The residual may be this part of the bodies' mean speed in any case.
 const OF_SPEED: f64 = 1.0 / 16.0;
-/// How much longer than a flight that bodies at rest would survive one is that is tried first, a power of two: what closes in
-/// from one side may be passed on through so many contacts. And how often that is halved, down to such a flight.
+/// The first flight that is tried is so many times as long as one that bodies at rest would survive (a power
+/// of two): a body that closes in from one side may push a row of so many contacts. It is halved so often,
+/// down to the flight of bodies at rest.
 const PASSED_ON: f64 = 64.0;
 const SHORTENED: u32 = 6;
-/// Halvings of the rest of a step for flights that keep the gap, down to those.
+/// The most halvings of the rest of a step for flights that keep the gap, down to flights that share room.
 const KEPT_HALVES: u32 = 16;
-/// And twice more where bodies could not give way without friction either: in the shortest flights bodies at rest use up a quarter of their room, since
-/// solutions are inexact where they have nothing to spare. What friction alone holds would lock for as long as that.
+/// Two more halvings where bodies could not give way without friction either: in the shortest flights bodies
+/// at rest use up a quarter of their room, since solutions are inexact where there is no room to spare.
+/// Contacts that friction alone holds would be locked for as long as that.
 const SHORTER: u32 = 2;
 
-/// When and how long.
+/// The present time and the end of the step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clock {
     pub(crate) now: f64,
@@ -49,27 +56,28 @@ pub(crate) struct Clock {
     pub(crate) end: f64,
 }
 
-/// How fast contacts close if what impulses move stands still, and how long they share their room then.
+/// How fast kinematic bodies close in if the bodies that impulses move stand still, and how long contacts
+/// share their room then.
 #[derive(Clone, Copy)]
 struct Closing {
     rate: f64,
     safe: f64,
 }
 
-/// What solutions may leave.
+/// The residuals that solutions may leave.
 #[derive(Clone, Copy)]
 struct Leaves {
-    /// The residual that is usual. More of it may come from the same contact in one flight after the other, and use up its room while others still have
-    /// some.
+    /// The usual residual. A larger one may come from the same contact in each flight, and use up its room
+    /// while others still have some.
     usual: f64,
-    /// The greatest residual of velocities that count as obeying the law.
+    /// The largest residual of velocities that count as obeying the law.
     most: f64,
-    /// The greatest speed of a body in a solution with the usual residual. A faster one is solved with the greatest residual instead: what is driven
-    /// out would be thrown.
+    /// The largest speed of a body in a solution with the usual residual. A faster one would throw a body
+    /// that is driven out of its place: it is solved with the largest residual instead.
     fastest: f64,
 }
 
-/// What friction does where it is in the way of what could move without it.
+/// What friction does where bodies could move without it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Friction {
     Slips,
@@ -79,15 +87,17 @@ enum Friction {
 }
 
 impl Problem<'_> {
-    /// Velocities until the end of the step, or until the end of shorter flights: where bodies tumble; where joints are not met at the end of
-    /// longer ones; and where bodies that follow their motions leave the others no velocities with which contacts keep the gap. There all
-    /// contacts may close by a part of their distance, for as long as there are velocities with which none closes by more: then what room is
-    /// left is shared by all, however little it is.
+    /// Solves the velocities of the flights from now to the end of the step, or of shorter ones. Flights are
+    /// shorter where bodies tumble, and where joints are not met at the end of longer ones. Where kinematic
+    /// bodies leave no velocities with which contacts keep the gap, all contacts may close by a part of their
+    /// distance; the flights last as long as there are velocities with which none closes by more. So all
+    /// share what room is left, however little it is.
     pub(crate) fn solve(&self, clock: Clock) -> Attempt {
         let Clock { now, end } = clock;
         let moved = || self.states.iter().filter(|s| moves(s));
-        // Bodies that are held keep their momenta and the time at which they were held: they have no flight that ends. Bodies that tumble in a
-        // crowd meet others before the energy of their turning counts: it is not divided for one of them.
+        // Held bodies keep their momenta and the time at which they were held: they have no flight that ends.
+        // Bodies that tumble in a crowd meet others before the energy of their rotation counts: flights
+        // aren't split for them.
         let is_whole = self.company != Company::Few || moved().count() > MANY;
         let splits = if self.has_like_joints() { Splits::Jointed } else { Splits::Own };
         let horizon = |s: &Cow<'_, RigidBody>| s.horizon_within(end, self.options.step, splits);
@@ -108,7 +118,8 @@ impl Problem<'_> {
         let gained = |tried: &Attempt, end: f64| {
             Gained::of(self.states, &tried.system, self.options, [now, end - now])
         };
-        // Flights of like bodies end as one where joints tear, of unlike ones sooner; and if that is not found they are halved further.
+        // Flights of like bodies are halved down to the shortest before the joints' bodies are made one;
+        // those of unlike bodies less often, and further only if they could not be made one.
         let limits =
             if self.has_like_joints() { &[MOST_FLIGHTS][..] } else { &[MOST_OF_A_SNAP, MOST_FLIGHTS] };
         for &most_flights in limits {
@@ -121,7 +132,7 @@ impl Problem<'_> {
                     break;
                 }
                 let shorter = self.attempt(now, half, Room::Kept);
-                // What shorter flights gain as well comes from elsewhere.
+                // What shorter flights gain as well is not due to joints.
                 let gains_as_much = |before: Gained| gained(&shorter, half).energy > LESS * before.energy;
                 if is_met && before.is_some_and(gains_as_much) {
                     break;
@@ -137,7 +148,8 @@ impl Problem<'_> {
         }
         let closing = self.closing();
         let rate = closing.map_or(0.0, |closing| closing.rate);
-        // Where no velocities obey the law the nearest ones may be as large as normals are askew: no faster than bodies were, or are driven.
+        // Where no velocities obey the law the nearest ones may be very large, if normals are askew. So the
+        // speed counts up to that of the fastest body before, or of what is driven.
         let speed = |s: &Cow<'_, RigidBody>| s.present_velocity().surface_speed(s.radius);
         let fastest = moved().map(speed).fold(rate, f64::max);
         let speed = tried.system.mean_speed().min(fastest);
@@ -156,14 +168,15 @@ impl Problem<'_> {
         self.squeezed([now, end], closing, leaves, friction).unwrap_or(tried)
     }
 
-    /// The speed of the fastest point of a body.
+    /// The speed of the fastest surface point of the bodies.
     fn fastest(&self, attempt: &Attempt) -> f64 {
         let bodies = self.states.iter().zip(&attempt.system.bodies).filter(|(s, _)| moves(s));
         bodies.map(|(s, body)| body.velocity.surface_speed(s.radius)).fold(0.0, f64::max)
     }
 
-    /// The bodies of closed chains as one, where their joints cannot be met at the end of a flight, nor of one half as long, because what pulls
-    /// them taut turns them to and fro faster than flights could follow.
+    /// The bodies of closed chains as one rigid body, where their joints cannot be met at the end of a
+    /// flight, nor of one half as long, because forces that pull them taut turn them to and fro faster than
+    /// flights can follow.
     fn stopped(&self, tried: &Attempt, [now, end]: [f64; 2]) -> Option<Attempt> {
         let half = now + 0.5 * (end - now);
         if !tried.found.diverges
@@ -175,12 +188,13 @@ impl Problem<'_> {
         self.closed_as_one([now, end])
     }
 
-    /// The bodies of closed chains as one.
+    /// The bodies of closed chains as one rigid body.
     fn closed_as_one(&self, span: [f64; 2]) -> Option<Attempt> {
         self.with_rigid(&self.of_closed_chains()?, span)
     }
 
-    /// Closed chains that motors drive, or bodies that move and that joints without motors connect, as one where no flight is short enough for their joints.
+    /// One rigid body where no flight is short enough for the joints: closed chains that motors drive, or
+    /// otherwise the moving bodies that joints without motors connect.
     fn snapped(&self, tried: &Attempt, span: [f64; 2]) -> Option<Attempt> {
         let is_driven = self.driven().next().is_some();
         if let Some(stopped) = self.closed_as_one(span).filter(|_| is_driven) {
@@ -192,7 +206,7 @@ impl Problem<'_> {
         self.with_rigid(&self.between_moved()?, span)
     }
 
-    /// The bodies of these joints as one; motors do nothing then.
+    /// The bodies of these joints as one rigid body; motors do nothing then.
     fn with_rigid(&self, numbers: &[usize], [now, end]: [f64; 2]) -> Option<Attempt> {
         let ahead =
             Ahead { length: end - now, step: self.options.step, forces: false, passed: 0.0, spent: 0.0 };
@@ -203,7 +217,7 @@ impl Problem<'_> {
         (self.ends_at_joints(&attempt) && attempt.may_last()).then_some(attempt)
     }
 
-    /// Do joints pull bodies to and fro faster than flights could follow?
+    /// Do joints pull bodies to and fro faster than flights can follow?
     fn is_taut(&self, attempt: &Attempt) -> bool {
         let spins: Vec<Option<DVec3>> =
             attempt.system.bodies.iter().map(|body| Some(body.velocity.angular)).collect();
@@ -213,9 +227,11 @@ impl Problem<'_> {
         pulls.into_iter().flatten().any(|pull| pull.speed >= UNSTABLE)
     }
 
-    /// The longest flights, of some lengths, in which contacts close by no more than the room that they share, and solutions leave no more
-    /// than usual; or than the most, if there are none or they make bodies too fast. If friction allows none, without: it can only hold what room there is. Where all is possible without friction, only what
-    /// that locks shares room, as between wedges, and slips where hardly any is left: it crushes nothing by itself.
+    /// The longest flights, of some lengths, in which contacts close by no more than the room that they
+    /// share, with the usual residual; or with the largest one, if there are none or they make bodies too
+    /// fast. If there are none with friction, they are solved without: friction can only hold as long as
+    /// there is room. Where all is possible without friction, only contacts that it locks share room, as
+    /// between wedges, and they slip where hardly any is left: friction alone crushes nothing.
     fn squeezed(
         &self,
         [now, end]: [f64; 2],
@@ -247,7 +263,7 @@ impl Problem<'_> {
                 Some(problem.attempt(now, until, Room::Shared)).filter(|attempt| obeys(attempt, most))
             };
             if friction == Friction::GivesWay {
-                // With friction, as long as that has flights no shorter than without.
+                // With friction, as long as its flights are no shorter than those without.
                 return longest(&ends, |until| shared(self, until).or_else(|| shared(&smooth, until)));
             }
             let of = |problem: &Problem<'_>| longest(&ends, |until| shared(problem, until));
@@ -257,8 +273,9 @@ impl Problem<'_> {
         usual.or_else(|| found(leaves.most))
     }
 
-    /// The longest flights that keep the gap, of halves, quarters and so on of the rest of the step, where they are longer than those that would share room:
-    /// what is pushed towards a wall shares none before it gets there. None: too little room is left, or no such flights are found.
+    /// The longest flights that keep the gap, of a half, a quarter and so on of the rest of the step, where
+    /// they are longer than those that would share room: bodies pushed towards a wall share none before they
+    /// are there. None: too little room is left, or no such flights are found.
     fn kept(&self, [now, end]: [f64; 2], closing: Closing, leaves: Leaves) -> Option<Attempt> {
         let shared = PASSED_ON * closing.safe;
         let contacts = self.contacts.iter().filter(|contact| contact.row.is_none());
@@ -276,7 +293,8 @@ impl Problem<'_> {
         longest(&ends, |until| tried(until).filter(|kept| keeps(kept) && is_slow(kept)))
     }
 
-    /// How fast, and for how long, what follows its motion closes in on bodies that stand still. None: nothing does, within the gap or so.
+    /// How fast kinematic bodies close in on bodies that stand still, and for how long. None: none does, at
+    /// contacts that are within one and a half gaps or expected.
     fn closing(&self) -> Option<Closing> {
         let of = |contact: &ContactPoint| {
             let state = |body: usize| &self.states[self.place(body)];
@@ -285,7 +303,7 @@ impl Problem<'_> {
             };
             let rate = -contact.rate(velocity(contact.a), velocity(contact.b));
             let is_moved = moves(state(contact.a)) || moves(state(contact.b));
-            // Also from further off, where bodies make way for it before it has come.
+            // Expected contacts count at any distance: bodies make way there before the other one has come.
             let is_met = contact.is_expected || contact.distance <= NEAR * contact.gap;
             let is_near = contact.row.is_none() && is_met;
             let closing = || Closing { rate, safe: contact.shared_room() / rate };
@@ -296,7 +314,8 @@ impl Problem<'_> {
     }
 }
 
-/// What is found for the latest of these times, descending, by bisection: the shorter flights are, the more may close in.
+/// The answer for the latest of these times (descending) for which there is one, by bisection: if there is
+/// one for some time there is one for every earlier time, since less closes in.
 fn longest<T>(ends: &[f64], found: impl Fn(f64) -> Option<T>) -> Option<T> {
     let (mut from, mut to, mut best) = (0, ends.len(), None);
     while from < to {

@@ -1,4 +1,4 @@
-//! Flights: constant twists between contacts, the velocities that they are solved for, and how long they are.
+//! Flights: constant twists between events, how their velocities are solved for, and how long they are.
 pub(crate) mod account;
 pub(crate) mod attempt;
 pub(crate) mod common_turn;

@@ -1,4 +1,5 @@
-//! The flights of a body: constant twists that have the velocity of the momenta in their middle, and how long they may be.
+//! The flights of a body, and how long they may be. A flight is a constant twist with the velocity that
+//! belongs to the momenta in its middle.
 
 use crate::StepError;
 use crate::body::rigid_body::RigidBody;
@@ -9,31 +10,35 @@ use d2m_contact::{Momenta, Velocity};
 use d2m_motion::{ConstantTwist, Pose, RigidMotion};
 use glam::{DMat3, DQuat, DVec3};
 
-/// What a tumbling body turns in one flight at most, in radians, times how far its moments of inertia are apart. The midpoint rule is the
-/// geodesic one: reversible, so its energy oscillates and does not drift; the middle of a flight is off the motion of a free top by
-/// h² |ω'|/8 at most, and |ω'| ≤ κ ω² with κ = 1 − I₁/I₃, so the energy by (κ ω h)²/8 of itself: 2⁻¹¹ for a sixteenth.
+/// How far a tumbling body may turn in one flight, in radians, times the relative difference κ of its moments
+/// of inertia. The midpoint rule is the geodesic one: reversible, so its energy oscillates and does not
+/// drift. The middle of a flight is off the motion of a free top by h² |ω'|/8 at most, and |ω'| ≤ κ ω² with κ
+/// = 1 − I₁/I₃, so the energy is off by (κ ω h)²/8 of itself: 2⁻¹¹ for a sixteenth.
 const MOST_TURN: f64 = 1.0 / 16.0;
-/// A spin of the middle of a flight that its iteration leaves off by more of itself is none: that gains a quarter each time or more where it finds
-/// one, so 2⁻²⁰ in less than the 64 times that it is tried.
+/// The iteration for the spin in the middle of a flight has failed where it ends further off than this part
+/// of the spin. Where it converges each round gains a factor of 3/4 or better, so 2⁻²⁰ in less than its 64
+/// rounds.
 const FOUND: f64 = 1.0 / 1_048_576.0;
-/// Flights of one body in a step at most, as long as nothing meets it; a body that turns faster flies longer ones.
+/// The most flights of one body in a step, as long as nothing meets it; a body that turns faster flies longer
+/// ones.
 const MOST_FLIGHTS: f64 = 1024.0;
 
-/// When flights of bodies that tumble end.
+/// When the flights of tumbling bodies end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Splits {
-    /// After equal parts of what is left.
+    /// After equal parts of the time that is left.
     Own,
-    /// At halves, quarters, … of the step, counted from its end: of many bodies at the same times, so that these are few.
+    /// At halves, quarters, … of the step, counted from its end. Many bodies end their flights at the same
+    /// times then.
     Common,
-    /// As [`Self::Own`], by the turn that a body makes in joints.
+    /// As [`Self::Own`], with the rate at which a jointed body turns.
     Jointed,
 }
-/// Parts of a flight that are left over from the division of a step.
+/// A rest of a flight that is shorter than this part of it, from rounding, is no flight of its own.
 const ROUND: f64 = 1e-6;
 
 impl RigidBody {
-    /// Where the flight has it at a time.
+    /// The pose in the present flight at a time.
     pub(crate) fn pose_at(&self, time: f64) -> Pose {
         self.flight.pose_and_twist(time).0
     }
@@ -42,8 +47,8 @@ impl RigidBody {
         Posed::new(&self.tree, self.pose_at(time))
     }
 
-    /// Velocity of a flight of some length: forces are those of its middle, or of the middle of the planned flight that it is
-    /// the rest of; gyroscopic terms those of its own middle.
+    /// The velocity of a flight of some length. Forces act until its middle, or until the middle of the
+    /// planned flight of which this is the rest; gyroscopic terms are those of its own middle.
     pub(crate) fn flight_velocity(&self, length: f64, gravity: DVec3) -> Velocity {
         let lead = self.lead.unwrap_or(0.5 * length);
         let linear = (self.momentum + self.force_with(gravity) * lead) * self.inverse_mass;
@@ -51,9 +56,10 @@ impl RigidBody {
         Velocity { linear, angular }
     }
 
-    /// The angular velocity ω with ω = R I⁻¹ Rᵀ L at R = exp([ω] h/2) R₀: a flight of length h with it has the angular momentum
-    /// L in its middle, and so have all the flights of a body that nothing meets. Under a pull it is the ω with (R I Rᵀ + G) ω = L + G ω₀.
-    /// Of a thin body that turns too far in a flight for that to be found it is the turn about L.
+    /// The angular velocity ω with ω = R I⁻¹ Rᵀ L at R = exp([ω] h/2) R₀. A flight of length h with it has
+    /// the angular momentum L in its middle, and so have all the flights of a body that nothing meets. Under
+    /// a pull it is the ω with (R I Rᵀ + G) ω = L + G ω₀. For a thin body that turns too far in a flight the
+    /// iteration fails; then it is the turn about L.
     pub(crate) fn midpoint_spin(&self, angular_momentum: DVec3, h: f64, pull: Option<Pull>) -> DVec3 {
         let sum = angular_momentum + pull.map_or(DVec3::ZERO, |pull| pull.stiffness * pull.free);
         let spin = |orientation: DQuat| {
@@ -76,18 +82,19 @@ impl RigidBody {
         if is_found || pull.is_some() { omega } else { self.precession(sum).unwrap_or(omega) }
     }
 
-    /// The turn about an angular momentum L that has as much of it along L as there is: ω = L (L·L)/(L·R I Rᵀ L). The long axis of a thin body goes
-    /// round L so while the body spins about that axis, how often whatever. In the body's own axes L stays what it is, so its energy ½ L·R I⁻¹ Rᵀ L
-    /// is the same at the end of the flight, and that of the flight is no more (Cauchy and Schwarz). None: no moment of inertia is about L.
+    /// The turn about an angular momentum L with all of L along its axis: ω = L (L·L)/(L·R I Rᵀ L). The long
+    /// axis of a thin body goes round L so while the body spins about that axis, however often. L stays the
+    /// same in the body's axes, so the energy ½ L·R I⁻¹ Rᵀ L is the same at the end of the flight, and that
+    /// of the flight is no more (Cauchy and Schwarz). None: the moment of inertia about L is zero.
     fn precession(&self, angular_momentum: DVec3) -> Option<DVec3> {
         let own = self.orientation.conjugate() * angular_momentum;
         let about = own.dot(self.inertia * own);
         (about > 0.0).then(|| angular_momentum * (angular_momentum.length_squared() / about))
     }
 
-    /// The orientation after a turn with an angular velocity for a time.
+    /// The orientation after a turn at an angular velocity for some time.
     pub(crate) fn turned(&self, omega: DVec3, time: f64) -> DQuat {
-        // Less than whole turns, as almost always, need no flight.
+        // Turns of less than a radian, as almost all are, need no flight.
         let vector = omega * time;
         if vector.abs().max_element() < 1.0 {
             return (Pose::from_rotation_vector(DVec3::ZERO, vector).rotation * self.orientation).normalize();
@@ -96,9 +103,10 @@ impl RigidBody {
         spin.map_or(self.orientation, |spin| spin.pose_and_twist(time).0.rotation)
     }
 
-    /// How long the next flight may be at most: the step, or what a body that tumbles takes for a small turn. It depends on the energy
-    /// alone, which a free body keeps: so all its flights are of one length, as the reversibility of the midpoint rule asks for. What joints
-    /// hold keeps no energy of its own: there it is the turn that the body makes, which of a thin bar is much less than it could make.
+    /// The latest end of the next flight: that of the step, or earlier for a body that tumbles. The length
+    /// depends on the energy alone, which a free body keeps: so all its flights have one length, as the
+    /// reversibility of the midpoint rule requires. A jointed body does not keep its energy: there the length
+    /// depends on the rate at which it turns, which for a thin bar is much less than its energy would allow.
     pub(crate) fn horizon_within(&self, end: f64, step: f64, splits: Splits) -> f64 {
         let left = end - self.time;
         if !self.is_dynamic() || left <= 0.0 {
@@ -127,7 +135,7 @@ impl RigidBody {
         if horizon > self.time && horizon < end { horizon } else { end }
     }
 
-    /// Starts a flight at `time`, of which exactly these numbers are certified and reported.
+    /// Starts a flight at `time`. Exactly these numbers are certified and reported.
     pub(crate) fn fly(&mut self, velocity: Velocity, horizon: f64) {
         self.flight = ConstantTwist::REST
             .with_at(self.center)
@@ -141,7 +149,7 @@ impl RigidBody {
         self.has_flown = true;
     }
 
-    /// [`Self::fly`], if the flight has numbers.
+    /// [`Self::fly`], if all numbers of the flight are finite.
     ///
     /// # Errors
     /// [`StepError::TooFast`] where the velocity, or the way or the turn to the horizon, is beyond doubles.
@@ -156,9 +164,10 @@ impl RigidBody {
         Ok(())
     }
 
-    /// Where the body is at a time, with the velocities of its momenta: for the first line of a run, whether or not it has flown before.
+    /// The pose with the velocities of the momenta at a time: for the first line of a run, whether or not the
+    /// body has flown before.
     pub(crate) fn first_flight(&self, time: f64) -> ConstantTwist {
-        // What is beyond all numbers is an error of the step that begins.
+        // The step that begins reports velocities that are not finite as an error.
         let known = Some(self.velocity()).filter(|v| v.linear.is_finite() && v.angular.is_finite());
         let velocity = known.filter(|_| self.is_dynamic()).unwrap_or_default();
         self.flight
@@ -169,7 +178,7 @@ impl RigidBody {
             .with_reference_time(time)
     }
 
-    /// The velocity that a user sees: that of the last flight, or the one given before the first.
+    /// The velocity that a user sees: that of the last flight, or the given one before the first.
     pub(crate) fn shown_velocity(&self) -> Velocity {
         if self.is_dynamic() && !self.has_flown && !self.asleep {
             return self.velocity();
@@ -182,24 +191,25 @@ impl RigidBody {
         Velocity { linear: self.flight.linear_velocity(), angular: self.flight.angular_velocity() }
     }
 
-    /// Does the present flight lead nowhere?
+    /// Is the velocity of the present flight zero?
     pub(crate) fn stands_still(&self) -> bool {
         self.present_velocity() == Velocity::default()
     }
 
-    /// Speed that no point of the surface exceeds in this flight.
+    /// A speed that no point of the surface exceeds in this flight.
     pub(crate) fn surface_speed(&self) -> f64 {
         self.present_velocity().surface_speed(self.radius)
     }
 
-    /// How fast a point of this body and one of another may come together in their present flights.
+    /// A bound on the speed at which a point of this body and one of another may approach in their present
+    /// flights.
     pub(crate) fn bound_approach(&self, other: &Self) -> f64 {
         let speed = |body: &Self| if body.has_flown { body.shown_velocity() } else { body.velocity() };
         let (a, b) = (speed(self), speed(other));
         (a.linear - b.linear).length() + a.angular.length() * self.radius + b.angular.length() * other.radius
     }
 
-    /// Moves the state along the flight: forces act on the momenta for as long as it lasted.
+    /// Moves the state along the flight to a time; forces change the momenta for the time between.
     pub(crate) fn advance(&mut self, time: f64, gravity: DVec3) {
         if time > self.time {
             let pose = self.pose_at(time);
@@ -218,7 +228,7 @@ impl RigidBody {
         }
     }
 
-    /// Where its surface is after a flight with this velocity.
+    /// The surface after a flight with this velocity.
     pub(crate) fn surface_after(&self, velocity: Velocity, length: f64) -> Surface {
         Surface {
             position: self.position + velocity.linear * length,
@@ -228,7 +238,7 @@ impl RigidBody {
         }
     }
 
-    /// How much faster its surface is after this.
+    /// By how much these momenta would raise the speed of its surface.
     pub(crate) fn gain(&self, added: Momenta) -> f64 {
         let angular = self.inverse_inertia_at(self.orientation) * added.angular;
         Velocity { linear: added.linear * self.inverse_mass, angular }.surface_speed(self.radius)

@@ -1,22 +1,23 @@
-//! Which contacts the velocities of a flight have to heed, and how.
+//! Which contacts the velocities of a flight have to obey, and the least rates at which these may close or
+//! open.
 
 use d2m_contact::{ContactPoint, SolverBody, Velocity};
 use d2m_feature::FeaturePair;
 use glam::DVec3;
 
-/// What distances contacts keep.
+/// The distances that contacts keep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Room {
-    /// The gap, and what is missing to it comes back.
+    /// The gap; what is missing to it is restored.
     Kept,
-    /// A part of what there is: where bodies are squeezed, all give way.
+    /// A part of the distance that there is: where bodies are squeezed, all contacts give way.
     Shared,
 }
 
 /// Times and speeds of a flight that is to be solved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Span {
-    /// From now to the end of the step.
+    /// From now to the end of the flight.
     pub(crate) remaining: f64,
     /// The length of a step.
     pub(crate) step: f64,
@@ -25,37 +26,41 @@ pub(crate) struct Span {
     pub(crate) room: Room,
 }
 
-/// Contacts that have been hit: what a flight ends at, plus the slack of its query.
+/// A contact has been hit within this part of the gap: the distance at which a flight ends, plus the slack of
+/// its query.
 pub(crate) const HIT: f64 = 0.625;
-/// Contacts that nothing bounces off and that are this near, in gaps, count however fast they close: flights that are braked by an
-/// expected contact end at the gap, and of the vertices of a face that lands flat all or none must be met.
+/// Contacts without restitution count within so many gaps, however fast they close. Flights that are braked
+/// by an expected contact end at the gap; and of the vertices of a face that lands flat, all or none have to
+/// be met.
 pub(crate) const NEAR: f64 = 1.5;
-/// The part of the gap to which curvature may bring a contact within a flight.
+/// The part of the gap to which rotation may bring a contact within a flight.
 const KEPT: f64 = 0.45;
-/// Where room is shared, contacts that are this many times closer than the widest ones close by less of what they have, but at least by a part of
-/// it: what presses would come ever closer to what it moves, while there is room behind.
+/// Where room is shared, contacts that are this many times closer than the widest one close by a smaller part
+/// of their room, but by this part of it at least. Otherwise a body that presses would come ever closer to
+/// what it moves while there is room behind.
 const MUCH: f64 = 4.0;
 const LEAST_SHARE: f64 = 0.25;
-/// The part of the gap at which hardly any is left.
+/// Hardly any room is left within this part of the gap.
 pub(crate) const LAST: f64 = 1.0 / 64.0;
-/// The part of the speeds of points that meet that room for their turn may add where that is so: a 256th of their energy.
+/// Rates that make room for rotation there are at most this part of the speeds of the points that meet: a
+/// 256th of their energy.
 const OF_SPEED: f64 = 1.0 / 16.0;
-/// The part of the gap that a step restores at most where it is missing.
+/// The most of a missing gap that a step restores, as a part of the gap.
 const RESTORED: f64 = 0.25;
 
-/// A contact that counts, and the rate along its normal that the velocities of the flight have at least. The momenta need
-/// no more than zero: what restores the gap or makes room for rotation adds no energy.
+/// A contact that counts, and the least rate along its normal in the flight. The momenta need no more than a
+/// rate of zero: restoring the gap, or making room for rotation, adds no momentum.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {
-    /// Place in the list of contacts.
+    /// Index in the list of contacts.
     pub(crate) contact: usize,
     pub(crate) target: f64,
-    /// What impulses see to of that.
+    /// The rate that impulses bring about.
     pub(crate) pushing: f64,
 }
 
-/// Contacts that close slower than the resting speed, and those that have been hit. The others are left to fly and to
-/// bounce: a row would brake them before they meet.
+/// Contacts that close slower than the resting speed, and those that have been hit. The others go on flying
+/// until they meet, and bounce: a row would brake them before.
 ///
 /// With distance d, gap g, time τ and the bound m on the acceleration along the normal by rotation,
 ///
@@ -65,8 +70,9 @@ pub(crate) struct Row {
 /// rate ≥ p (5/8 min(g, d) − d)/τ + m τ/2       if room is shared: p = 4 min(g, d) over the greatest of these, from 1/4 to 1
 /// ```
 ///
-/// The first two ask for no more than a gap in a step, or m τ/2 where what drives turns into others; the second one, where hardly any room is
-/// left, for m τ, with what slips along what turns, up to a part of the speeds there are.
+/// The first two are at most a gap in a step, or m τ/2 where a driven body turns into others. Where hardly
+/// any room is left the second is m τ, with the sliding along what turns, up to a part of the speeds of the
+/// points.
 pub(crate) fn select<'b>(
     found: &[&ContactPoint],
     span: Span,
@@ -74,7 +80,7 @@ pub(crate) fn select<'b>(
 ) -> Vec<Row> {
     let velocity = |i: usize| body(i).velocity;
     let mut rows = Vec::new();
-    // The fastest spin of what impulses do not move.
+    // The fastest spin of the bodies that impulses do not move.
     let spin = |i: usize| if body(i).inverse_mass > 0.0 { 0.0 } else { velocity(i).angular.length() };
     let drive = found.iter().flat_map(|c| [c.a, c.b]).map(spin).fold(0.0, f64::max);
     let widest = found.iter().filter(|c| c.row.is_none()).map(|c| near(c)).fold(0.0, f64::max);
@@ -93,12 +99,14 @@ pub(crate) fn select<'b>(
         }
         let spins = [contact.a, contact.b].map(|i| velocity(i).angular);
         let curved = 0.5 * tau * bend(contact, spins);
-        // A gap in a step: in a short rest of one, making room at once would be a jerk. But there is room for what drives turn, and turn into, in any
-        // case: not for other spins, which what is made with impulses could raise without end.
+        // At most a gap in a step: in the short rest of one, making room at once would be a jerk. The
+        // rotation of a drive gets its room in any case. Other spins do not: impulses that make room could
+        // raise these without end.
         let carried = spins.map(|spin| spin.clamp_length_max(drive));
         let led =
             if led_into(contact, carried, velocity) > 0.0 { 0.5 * tau * bend(contact, carried) } else { 0.0 };
-        // And where hardly any room is left, for whatever else turns: flights would end at one half of what there is after the other.
+        // Where hardly any room is left all rotation counts: each flight would end at half of the last
+        // distance otherwise.
         let turned = if d < LAST * gap { room_to_turn(contact, spins, velocity, tau) } else { 0.0 };
         let most = led.max(turned).max(gap / span.step);
         let target = if span.room == Room::Shared {
@@ -123,9 +131,10 @@ fn bend(contact: &ContactPoint, spins: [DVec3; 2]) -> f64 {
     of(spins[0], contact.arm_a) + of(spins[1], contact.arm_b)
 }
 
-/// The rate at which points part so far that what these spins do to them does not bring them together again in a flight: twice what
-/// makes up for the acceleration, but no more than a part of the speeds at which they move, so that their energy changes by hardly anything. What slips
-/// along a face that turns is known ([`led_into`]), of edges a bound is: their normal turns with both.
+/// The rate at which points part so far that these spins do not bring them together again in a flight. It is
+/// twice what makes up for the acceleration, but no more than a part of the speeds of the points, so that
+/// their energy hardly changes. For sliding along a face that turns the acceleration is known ([`led_into`]);
+/// for edges, whose normal turns with both bodies, it is bounded.
 fn room_to_turn(
     contact: &ContactPoint,
     spins: [DVec3; 2],
@@ -145,8 +154,9 @@ fn room_to_turn(
     (tau * acceleration).min(OF_SPEED * speed)
 }
 
-/// The acceleration with which bodies with these spins come closer along the normal while their centers fly straight: as a drum does to what it carries
-/// along. With the rates v of the contact's points, and n turning with the body of the face at ω,
+/// The acceleration along the normal with which bodies with these spins approach while their centers fly
+/// straight, as a drum approaches what it carries along. With the velocities v of the contact's points, and n
+/// turning at ω with the body of the face,
 ///
 /// ```text
 /// −(2 (ω × n)·(v_b − v_a) + n·(ω_b × (ω_b × r_b) − ω_a × (ω_a × r_a)))
@@ -169,7 +179,8 @@ fn near(contact: &ContactPoint) -> f64 {
     contact.distance.min(contact.gap)
 }
 
-/// By how much a contact may close where room is shared; at most zero, so that it stays or opens, where flights would lead too close.
+/// By how much a contact may close where room is shared. It is negative, so that the contact opens, where it
+/// is closer already than the part that it has to keep.
 fn share(contact: &ContactPoint, widest: f64) -> f64 {
     let room = contact.shared_room();
     if room > 0.0 { room * (MUCH * near(contact) / widest).clamp(LEAST_SHARE, 1.0) } else { room }
@@ -195,8 +206,8 @@ mod tests {
         velocity: Velocity { linear: DVec3::ZERO, angular: DVec3::ZERO },
     };
 
-    /// The closest contact closes by a quarter of its share, one half as far as the widest by all of it; what touches or is too close is left as
-    /// it is, also where nothing is apart.
+    /// The closest contact closes by a quarter of its share, one half as far as the widest by all of it.
+    /// Contacts that touch or are too close do not close, also where all of them touch.
     #[test]
     fn contacts_much_closer_than_others_close_by_less() {
         let at = |distance: f64| ContactPoint { distance, ..upright([0, 1]) };
@@ -211,7 +222,8 @@ mod tests {
         assert_eq!(targets(&[0.5, -0.5]), [-0.1875, 0.1875]);
     }
 
-    /// Of a face that lands flat without bouncing all vertices within one and a half gaps count, however fast they close; what bounces is left to fly.
+    /// All vertices of a face that lands flat without bouncing count within one and a half gaps, however fast
+    /// they close. Those that bounce have no rows.
     #[test]
     fn what_lands_flat_is_met_with_all_of_its_vertices() {
         let falling =
@@ -226,7 +238,8 @@ mod tests {
         assert_eq!([count(0.0), count(0.5)], [3, 0]);
     }
 
-    /// A drum comes closer to what it carries along, which flies straight, as their distance does; and no closer to what it slides under.
+    /// A drum approaches what it carries along, which flies straight, as their distance says; and it does not
+    /// approach what it slides under.
     #[test]
     fn a_drum_leads_into_what_it_carries_along() {
         let (rate, radius, tau) = (3.0, 2.0, 1e-3);
@@ -248,7 +261,8 @@ mod tests {
         assert!((of(DVec3::ZERO) + rate * rate * radius).abs() < 1e-9);
     }
 
-    /// Room for turning of no more than a gap a step, and for what a drum turns: not for what turns faster in it, which would make it faster still.
+    /// Rotation gets room up to a gap in a step, and the rotation of a drum in any case. A body that turns
+    /// faster in the drum gets no more: that would make it faster still.
     #[test]
     fn room_is_made_for_what_drives_turn() {
         let body = |inverse_mass: f64, spin: f64, speed: f64| SolverBody {
@@ -257,7 +271,7 @@ mod tests {
             ..STILL
         };
         let drum = body(0.0, 3.0, 0.0);
-        // Its inner face, and the vertex of something that turns alike.
+        // The inner face of the drum, and a vertex of a body that turns alike.
         let feature = FeaturePair::FaceVertex { face: 0, vertex: 0 };
         let touching = ContactPoint { feature, distance: KEPT, arm_a: DVec3::NEG_Y, ..upright([0, 1]) };
         let span = Span { remaining: 0.01, step: 1e3, resting_speed: 1.0, room: Room::Kept };

@@ -1,10 +1,10 @@
-//! Bodies as the velocities of flights are solved for.
+//! Bodies in the form that the contact solver takes.
 
 use crate::body::rigid_body::RigidBody;
 use d2m_contact::{SolverBody, Velocity};
 use glam::DMat3;
 
-/// May impulses move it? What sleeps bears what rests on it, until it wakes.
+/// Do impulses move it? A sleeping body bears others as a fixed one does, until it wakes.
 pub(crate) fn moves(state: &RigidBody) -> bool {
     state.is_dynamic() && !state.held && !state.asleep
 }
@@ -13,7 +13,7 @@ pub(crate) fn body_at(state: &RigidBody, velocity: Velocity, inverse_inertia: DM
     SolverBody { inverse_mass: state.inverse_mass, inverse_inertia, velocity }
 }
 
-/// A body that impulses do not move.
+/// A body that impulses do not move, with its present velocity.
 pub(crate) fn still(state: &RigidBody) -> SolverBody {
     SolverBody { inverse_mass: 0.0, inverse_inertia: DMat3::ZERO, velocity: state.present_velocity() }
 }

@@ -1,9 +1,10 @@
-//! What energy bodies turn with in flights that impulses have them begin.
+//! The energy of rotation in flights that begin with impulses.
 //!
-//! A flight has the angular momentum of its body in its middle, where the body is turned by half of the flight. Of a thin body whose momentum is
-//! mostly across its long axis a small error of where that axis points then is a large spin about it, which turns the body elsewhere still: nothing
-//! is found but for flights so short that the axis hardly moves. How short is known of a body that nothing meets
-//! ([`RigidBody::horizon_within`]), and of others only with the impulses that are solved for.
+//! A flight has the angular momentum of its body in its middle, where the body is turned by half of the
+//! flight. For a thin body whose momentum is mostly across its long axis, a small error of that axis'
+//! direction is a large spin about it, which turns the body elsewhere still: a solution is found only for
+//! flights so short that the axis hardly moves. How short is known beforehand for a body that nothing meets
+//! ([`RigidBody::horizon_within`]), and for others only with the impulses of the solution.
 
 use crate::body::rigid_body::RigidBody;
 use crate::flight::attempt::Attempt;
@@ -13,17 +14,20 @@ use d2m_contact::{Momenta, add_impulses};
 use glam::{DQuat, DVec3};
 use std::borrow::Cow;
 
-/// The part of the energy of turning that a flight may have more or less than the momenta that it begins with: what is found of its middle is off by
-/// 2⁻¹¹ of it in flights as short as those of bodies that nothing meets, and by any factor where nothing is found.
+/// The energy of rotation in a flight may differ by this part from that of the momenta at its start. A
+/// solution for its middle is off by 2⁻¹¹ in flights as short as those of bodies that nothing meets; by any
+/// factor where none is found.
 const MOST_OFF: f64 = 1.0 / 128.0;
 
 impl<'s> Problem<'s> {
-    /// Does each body turn with the energy that its momenta have at the start of its flight, and have at its end? What joints hold does not turn freely.
+    /// Does each body rotate with the energy of its momenta at the start of its flight, and have that at its
+    /// end, too? Jointed bodies do not rotate freely: the answer is yes.
     pub(crate) fn keeps_energy_of_turning(&self, attempt: &Attempt) -> bool {
         self.has_rows() || self.turns(attempt).iter().all(|turn| turn.is_flown() && turn.ends_as_it_begins())
     }
 
-    /// Does each body end its flight with as much energy of turning as it has at the start, with whatever else its velocity leads to?
+    /// Does each body end its flight with the energy of rotation of its start, whatever else its velocity
+    /// leads to?
     pub(crate) fn ends_with_energy_of_turning(&self, attempt: &Attempt) -> bool {
         self.has_rows() || self.turns(attempt).iter().all(Turn::ends_as_it_begins)
     }
@@ -39,25 +43,25 @@ impl<'s> Problem<'s> {
                 + added[k].angular,
             spin: attempt.system.bodies[k].velocity.angular,
             length,
-            // Of bodies at rest the momentum is what rounding leaves of impulses.
+            // The momentum of bodies at rest is only rounding of impulses.
             least: state.mass * self.speed() * self.speed(),
         };
         self.states.iter().enumerate().filter(|(_, state)| moves(state)).map(turn).collect()
     }
 }
 
-/// How a body turns in a flight that begins with an angular momentum.
+/// The rotation of a body in a flight that begins with an angular momentum.
 struct Turn<'s> {
     state: &'s RigidBody,
     momentum: DVec3,
     spin: DVec3,
     length: f64,
-    /// Less than that counts for nothing.
+    /// Differences of energy below this do not count.
     least: f64,
 }
 
 impl Turn<'_> {
-    /// Twice the energy of the momentum with the body as it stands.
+    /// Twice the energy of the momentum at an orientation.
     fn of_momentum(&self, orientation: DQuat) -> f64 {
         self.momentum.dot(self.state.inverse_inertia_at(orientation) * self.momentum)
     }
@@ -67,7 +71,8 @@ impl Turn<'_> {
         (energy - due).abs() <= MOST_OFF * due + self.least
     }
 
-    /// Has the flight the energy of the momentum? A spin about the axes of the body is the same all through it.
+    /// Has the flight the energy of the momentum? A spin in the axes of the body is the same all through the
+    /// flight.
     fn is_flown(&self) -> bool {
         let own = self.state.orientation.conjugate() * self.spin;
         self.is_due(own.dot(self.state.inertia * own))
