@@ -1,4 +1,4 @@
-//! Bodies that contacts connect.
+//! Groups: bodies that contacts connect, and their contacts.
 
 use super::{FEW_ITEMS, Key, Occasion, Step};
 use crate::StepError;
@@ -11,30 +11,31 @@ use d2m_bvh::QueryError;
 use d2m_contact::ContactPoint;
 use d2m_mesh::parallel::map_owned;
 
-/// And those within this many times the way that two bodies come closer in what is left of the step.
+/// Contacts also count within this many times the distance by which two bodies approach in the rest of the
+/// step.
 const APPROACH: f64 = 2.0;
 
-/// What bodies that sleep do when something that they touch is solved.
+/// What sleeping bodies do when bodies that touch them are solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Sleepers {
-    /// They bear it, unless what touches them follows a motion.
+    /// They bear these as fixed bodies do, unless a kinematic body touches them.
     Bear,
     #[default]
     Wake,
 }
 
-/// Bodies whose flights begin anew, and what they may touch.
+/// Bodies whose flights begin anew, and their contacts.
 #[derive(Debug, Default)]
 pub(super) struct Group {
     /// By body number.
     pub(super) is_member: Vec<bool>,
-    /// Ascending, after [`Group::sort`].
+    /// In ascending order after [`Group::sort`].
     pub(super) members: Vec<usize>,
     /// All contacts of the members within the margin; in order after [`Group::sort`].
     pub(super) contacts: Vec<ContactPoint>,
-    /// Pairs whose contacts are among those or that have none; ascending after [`Group::sort`].
+    /// Pairs whose contacts are among those, or that have none; in ascending order after [`Group::sort`].
     measured: Vec<Key>,
-    /// Are all pairs of a body among those? By body number.
+    /// Have all pairs of a body been measured? By body number.
     is_measured: Vec<bool>,
     /// Joints whose rows are among the contacts, ascending.
     joints: Vec<usize>,
@@ -47,7 +48,7 @@ impl Group {
         Self { is_member, is_measured, sleepers, ..Self::default() }
     }
 
-    /// Could this body be a member whose velocity is solved? What sleeps could be where it wakes.
+    /// Could this body be a member whose velocity is solved? A sleeping one could where it wakes.
     pub(super) fn may_move(&self, body: &RigidBody) -> bool {
         let bears = body.asleep && self.sleepers == Sleepers::Bear;
         body.is_dynamic() && !body.held && !bears
@@ -59,7 +60,8 @@ impl Group {
         self.contacts.sort_by_key(|c| (c.a, c.b));
     }
 
-    /// Where the solution begins: the impulses that the members had at this instant, for a part of the time.
+    /// Warm start: gives the contacts a part of the impulses that they had at this instant, before these were
+    /// taken back.
     pub(super) fn warm(&mut self, retracted: &[ContactPoint], part: f64) {
         for known in retracted {
             let key = (known.a, known.b);
@@ -81,8 +83,8 @@ impl Group {
 }
 
 impl Step<'_> {
-    /// Takes back the impulses that contacts at rest between the members, or with what impulses do not move, have had at this
-    /// instant, and has the solution begin with a part of them; the bodies that had some.
+    /// Takes back the impulses of this instant at resting contacts between the members, or with bodies that
+    /// impulses do not move. A part of them is the warm start. Returns the bodies that had some.
     pub(super) fn retract(&mut self, group: &mut Group, part: f64) -> Vec<usize> {
         let bodies = &mut self.sim.bodies;
         let is_inner = |c: &mut ContactPoint| {
@@ -103,7 +105,7 @@ impl Step<'_> {
         inner.iter().flat_map(|contact| [contact.a, contact.b]).filter(|&i| moves(&bodies[i])).collect()
     }
 
-    /// Adds bodies and all that contacts connect with them.
+    /// Admits bodies, and all bodies that contacts connect with them.
     pub(super) fn admit_connected(
         &mut self,
         group: &mut Group,
@@ -118,7 +120,8 @@ impl Step<'_> {
         Ok(())
     }
 
-    /// Adds the rows of the joints of some bodies; the bodies that these connect with the group and that are none of it yet.
+    /// Adds the joint rows of some bodies. Returns the bodies that these connect with the group and that are
+    /// not members yet.
     fn admit_joints(&mut self, group: &mut Group, of: &[usize], time: f64, occasion: Occasion) -> Vec<usize> {
         let sim = &mut *self.sim;
         let end = if let Occasion::Plan { until } = occasion { until } else { self.end };
@@ -141,7 +144,8 @@ impl Step<'_> {
         next
     }
 
-    /// Adds bodies, moved to `time` and awake, with their contacts; the bodies that these connect with the group and that are none of it yet.
+    /// Admits bodies, moved to `time` and awake, with their contacts. Returns the bodies that these connect
+    /// with the group and that are not members yet.
     pub(super) fn admit(
         &mut self,
         group: &mut Group,
@@ -161,7 +165,8 @@ impl Step<'_> {
                 let body = &mut self.sim.bodies[i];
                 let begins = body.time == time;
                 body.advance(time, gravity);
-                // What is left of a flight to the end of the step goes on as it was planned, if that is near enough to what its own middle needs.
+                // The flight for the rest of the step keeps its plan if that is near enough to what its own
+                // middle needs.
                 let body = &self.sim.bodies[i];
                 let goes_on = match occasion {
                     Occasion::Start | Occasion::Plan { .. } => false,
@@ -176,7 +181,7 @@ impl Step<'_> {
             }
             group.members.push(i);
         }
-        // What stands still, or follows its motion as before, leads to no contact of its own.
+        // A body that stands still, or a kinematic one in its present flight, leads to no contact of its own.
         let begins = |&i: &usize| {
             let body = &self.sim.bodies[i];
             let follows = body.is_kinematic() && (occasion == Occasion::Start || body.horizon <= time);
@@ -206,7 +211,8 @@ impl Step<'_> {
         }
         let mut found = map_owned(unknown, FEW_ITEMS, |(key, pair)| {
             let (gap, reach) = pair.map_or((sim.options.gap, 1.0), |pair| (pair.gap, pair.reach));
-            // What is further apart than the present motion leads needs no row; if forces lead there all the same, the flight ends at an event.
+            // Pairs that are further apart than they approach by their present motion need no row; if forces
+            // bring them together all the same, the flight ends at an event.
             let way = reach * APPROACH * sim.bodies[key.0].bound_approach(&sim.bodies[key.1]) * step;
             let margin = (AROUND * sim.options.gap + way).min(most);
             let (a, b) = (&sim.bodies[key.0], &sim.bodies[key.1]);
@@ -226,15 +232,15 @@ impl Step<'_> {
             let answer = match answer {
                 Some(Ok(points)) => Some(points),
                 None => None,
-                // Closer than rounding: the query of the flight says so, too.
+                // Closer than rounding: the query of the flight will say so, too.
                 Some(Err(QueryError::NotApart { .. })) => Some(Measured::default()),
                 Some(Err(error)) => {
                     let (a, b) = (&self.sim.bodies[key.0], &self.sim.bodies[key.1]);
                     return Err(a.query_error(b, error).into());
                 }
             };
-            // The step begins with the impulses of the last one; what is solved again begins with those taken back, what has just woken with
-            // those that it had.
+            // The step begins with the impulses of the last one; a body that has just woken with those that
+            // it had; contacts that are solved again with those that were taken back.
             let part = match occasion {
                 Occasion::Start => 1.0,
                 _ if self.has_woken(key.0, time) || self.has_woken(key.1, time) => {
@@ -267,7 +273,7 @@ impl Step<'_> {
             }));
             for (i, other) in [key, (key.1, key.0)] {
                 let body = &self.sim.bodies[i];
-                // What follows a motion presses on others without regard.
+                // A kinematic body presses on others whether they sleep or not.
                 let is_driven = || self.sim.bodies[other].is_kinematic() && body.is_dynamic() && !body.held;
                 if !group.is_member[i] && (group.may_move(body) || is_driven()) {
                     next.push(i);

@@ -1,12 +1,12 @@
-//! What ends flights.
+//! Events: what ends flights.
 
 use glam::DVec3;
 
-/// Something that ends flights: at `time`, of bodies that have not begun another flight since.
+/// An event ends the flights of its bodies at `time`, unless they have begun others since.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Event {
     pub(super) time: f64,
-    /// Until when the bodies have certainly met.
+    /// The time by which the bodies have certainly met.
     pub(super) by: f64,
     pub(super) bodies: [usize; 2],
     pub(super) versions: [u64; 2],
@@ -20,11 +20,11 @@ pub(super) struct Event {
 pub(super) enum Cause {
     /// The bodies meet.
     Contact,
-    /// The end of what the query could certify.
+    /// The query could certify nothing beyond this time.
     Budget,
-    /// Too close for any query.
+    /// The bodies are too close for any query.
     Stuck,
-    /// A flight that was planned to end; both bodies are the same.
+    /// The end of a flight as planned; both bodies are the same.
     Horizon,
 }
 

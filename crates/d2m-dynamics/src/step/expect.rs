@@ -1,4 +1,4 @@
-//! Contacts that flights are certain to lead to are solved before they are met.
+//! Expected contacts: those that flights are certain to lead to are solved before they are met.
 
 use super::event::{Cause, Event};
 use super::resolve::LEEWAY;
@@ -10,19 +10,21 @@ use d2m_contact::ContactPoint;
 use d2m_mesh::parallel::map_owned;
 use std::collections::BTreeMap;
 
-/// Solutions from one instant, each with the contacts that the flights of the one before led to: so many in any case, and four times as many
-/// as long as these are no more than half of the first ones. What is left over is an event, after which everything that it cuts is solved
-/// anew; but where constraints contradict each other, as of a body that is crushed, no round gets closer.
+/// The most solutions from one instant, each with the contacts to which the flights of the last one led; four
+/// times as many as long as the bodies of these contacts are no more than half of the first ones. A contact
+/// beyond that is an event, after which all bodies whose flights it cuts are solved again. Where constraints
+/// contradict each other, as at a body that is crushed, no round gets closer.
 const MOST_ROUNDS: u32 = 4;
 
-/// How many times as fast as anything was nothing becomes by contacts to come. What is crushed would obey their rows by a turn that is as fast
-/// as the arms of rows so far from their contact are wrong: then they are left to events.
+/// Expected contacts make no body faster than this many times the fastest speed before. A crushed body would
+/// obey their rows by a rotation as fast as the arms of rows so far from their contact are wrong: then they
+/// are left to events.
 const RUNAWAY: f64 = 8.0;
 
-/// Contacts to come, by pair, as they are seen from one instant.
+/// Expected contacts, by pair, as they are seen from one instant.
 pub(super) type Expected = BTreeMap<Key, Vec<ContactPoint>>;
 
-/// A contact that two flights lead to, and when.
+/// A contact to which two flights lead, and when.
 struct View<'s> {
     bodies: [&'s RigidBody; 2],
     /// When the flights begin, meet, and would end.
@@ -32,12 +34,12 @@ struct View<'s> {
 }
 
 impl View<'_> {
-    /// A contact of where the flights meet, as a row for the velocities that they begin with.
+    /// The contact at which the flights meet, as a row for the velocities with which they begin.
     ///
-    /// The points that will meet are d − rate (met − time) apart now, along the normal. Impulses that act at two points make
-    /// angular momentum: both arms reach to one point, the middle of the two, or of two bodies only one of which moves that of the one
-    /// that does. By this the rate along the normal is another one, by ω times what the bodies slide along each other before
-    /// they meet; the distance makes up for it.
+    /// The points that will meet are d − rate (met − time) apart now, along the normal. Impulses that act at
+    /// two points would add angular momentum, so both arms reach to one point: the middle of the two, or, if
+    /// only one body moves, the point of that. This changes the rate along the normal by ω times the way by
+    /// which the bodies slide along each other before they meet; the distance makes up for it.
     fn seen_now(&self, point: &ContactPoint) -> ContactPoint {
         let [a, b] = self.bodies;
         let [va, vb] = self.bodies.map(RigidBody::present_velocity);
@@ -56,7 +58,8 @@ impl View<'_> {
         ContactPoint { arm_a, arm_b, distance, is_expected: true, ..*point }
     }
 
-    /// Are these contacts, seen now, of other features, or do they differ in what they ask of flights by as much as counts?
+    /// Have these contacts other features, or do they differ in what they require of flights by as much as
+    /// counts?
     fn differ(&self, old: &ContactPoint, new: &ContactPoint) -> bool {
         let [a, b] = self.bodies;
         let way = a.bound_approach(b) * (self.end - self.time);
@@ -66,11 +69,12 @@ impl View<'_> {
 }
 
 impl Step<'_> {
-    /// Solves the flights that begin at `time` again with the contacts that they are certain to lead to, as long as these
-    /// have no restitution: a body that another one stops anyway is braked so as to come to it at the end of the step. This is
-    /// the non-penetration constraint of time stepping (Anitescu and Potra 1997), linearised where the query has found the
-    /// contact; it needs no impulse where bodies would miss each other, and its targets allow approach only, so it takes
-    /// energy and adds none. What the linearisation leaves over is an event like others.
+    /// Solves the flights that begin at `time` again with the contacts that they are certain to lead to,
+    /// where these have no restitution: a body that another one stops anyway is braked so that it reaches
+    /// that at the end of the step. This is the non-penetration constraint of time stepping (Anitescu and
+    /// Potra 1997), linearised where the query has found the contact. It needs no impulse where bodies would
+    /// miss each other, and its targets only allow approach, so it takes energy and adds none. What the
+    /// linearisation leaves is an event like others.
     pub(super) fn solve_expected(&mut self, time: f64) -> Result<(), StepError> {
         self.expected = Expected::default();
         let mut first = None;
@@ -96,13 +100,13 @@ impl Step<'_> {
         Ok(())
     }
 
-    /// How fast a surface of these bodies moves at most.
+    /// The largest speed of a surface point of these bodies.
     fn fastest(&self, of: impl Iterator<Item = usize>) -> f64 {
         let speed = |body: &RigidBody| body.present_velocity().surface_speed(body.radius);
         of.map(|i| speed(&self.sim.bodies[i])).fold(0.0, f64::max)
     }
 
-    /// Does this event end flights that begin at `time`, by a contact that nothing bounces off?
+    /// Does this event end flights that begin at `time`, by a contact without restitution?
     fn is_expected(&self, event: &Event, time: f64) -> bool {
         let [a, b] = event.bodies;
         let begins = |i: usize| {
@@ -118,7 +122,7 @@ impl Step<'_> {
             && self.sim.material(a, b).restitution == 0.0
     }
 
-    /// Measures the contacts of these events where they happen, and returns the bodies of those that are found.
+    /// Measures the contacts of these events where they happen. Returns the bodies of those that are new.
     fn measure_expected(&mut self, events: Vec<Event>, time: f64) -> Vec<usize> {
         let sim = &*self.sim;
         let (most, end) = (self.margin, self.end);
@@ -128,7 +132,7 @@ impl Step<'_> {
             let gap = sim.pairs.get(&key).map_or(sim.options.gap, |pair| pair.gap);
             let way = a.bound_approach(b) * (end - event.time);
             let margin = (AROUND * sim.options.gap + way).min(most);
-            // Too close to measure is for the event itself to deal with.
+            // Contacts too close to be measured are left to the event itself.
             let measured = measure(
                 &sim.bodies,
                 key,
@@ -165,7 +169,7 @@ mod tests {
     use glam::DVec3;
     use std::sync::Arc;
 
-    /// Where a round leads to what it heeded, the next one would find the same.
+    /// Where a round leads to a contact that it has obeyed already, the next round would find the same.
     #[test]
     fn contacts_that_ask_for_the_same_are_not_new() {
         let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=1&y=1&z=1").unwrap()));

@@ -1,4 +1,4 @@
-//! When flights end.
+//! Queries of when flights end.
 
 use super::event::{Cause, Event};
 use super::{FEW_ITEMS, Key, Step};
@@ -15,7 +15,8 @@ use glam::DVec3;
 use std::cmp::Reverse;
 
 impl Step<'_> {
-    /// When do the flights of these bodies end? Every pair with one of them that may meet until the end of the step is queried.
+    /// Finds when the flights of these bodies end: each pair with one of them that may meet before the end of
+    /// the step is queried.
     pub(super) fn query(&mut self, time: f64, changed: &[usize]) -> Result<(), StepError> {
         let end = self.end;
         for &i in changed {
@@ -28,7 +29,7 @@ impl Step<'_> {
                 self.heap.push(Reverse(event));
             }
         }
-        // Two bodies are queried if boxes that hold the separation between them meet.
+        // Two bodies are queried if boxes around their flights, grown by the distance that is kept, meet.
         let mut keys = self.partners(changed);
         let bodies = &self.sim.bodies;
         let gap = self.sim.options.gap;
@@ -91,7 +92,8 @@ impl Step<'_> {
         failed.map_or(Ok(()), |error| Err(error.into()))
     }
 
-    /// No two bodies that may meet do so on the flights that they have now, until a time to which they fly.
+    /// For the audit: no two bodies that may meet do so on their present flights, until a time to which they
+    /// fly.
     #[cfg(feature = "audit")]
     pub(super) fn conclude_flights(&self, until: f64) {
         let bodies = &self.sim.bodies;
@@ -108,8 +110,8 @@ impl Step<'_> {
         }
     }
 
-    /// The pairs of one of these bodies and any other whose boxes over their flights meet, and that may meet; ascending. The
-    /// boxes are grown by the gap and by half of the margin at least.
+    /// The pairs, ascending, of one of these bodies and any other that may meet it and whose boxes around
+    /// their flights meet. The boxes are grown by the gap and by half of the margin at least.
     pub(super) fn partners(&mut self, of: &[usize]) -> Vec<Key> {
         let margin = self.sim.options.gap.max(0.5 * self.margin);
         let sim = &mut *self.sim;
@@ -129,7 +131,8 @@ mod tests {
     use d2m_mesh::Faces;
     use std::sync::Arc;
 
-    /// Of bodies that tumble at different rates the flights end together: the times of each are those of the faster ones, too.
+    /// Flights of bodies that tumble at different rates end together: where those of one body end, those of
+    /// the faster ones do, too.
     #[test]
     fn flights_of_many_bodies_end_at_common_times() {
         let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=1&y=0.2&z=0.1").unwrap()));

@@ -1,4 +1,4 @@
-//! Bodies that can go no further in a step stand still until its end.
+//! Holding: bodies that can go no further in a step stand still until its end.
 
 use super::event::Event;
 use super::slide::{Sliding, slidings};
@@ -12,7 +12,8 @@ use d2m_contact::{ContactPoint, SolverBody, Squeeze, Velocity};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Step<'_> {
-    /// The bodies of these events stand still until the end of the step, unless it is proven that something crushes one of them.
+    /// Holds the bodies of these events until the end of the step, unless one of them is proven to be
+    /// crushed.
     pub(super) fn hold(&mut self, time: f64, events: &[Event]) -> Result<(), StepError> {
         if let Some([pushing, crushed]) = self.proven_crushed(time, events) {
             let name = |i: usize| self.sim.bodies[i].name.to_string();
@@ -44,7 +45,7 @@ impl Step<'_> {
                 }
             }
         }
-        // The other bodies of the events that were gathered fly on as they did: they are queried against those held.
+        // The other bodies of the gathered events fly on as before: they are queried against the held ones.
         let others = events.iter().flat_map(|event| event.bodies).filter(|&i| !self.sim.bodies[i].held);
         let mut seeds: Vec<usize> = others.chain(changed).collect();
         seeds.sort_unstable();
@@ -52,7 +53,7 @@ impl Step<'_> {
         self.query(time, &seeds)
     }
 
-    /// What stands still, and is met by a body that follows its motion, moves again.
+    /// Held bodies that a kinematic body meets move again.
     pub(super) fn release(&mut self, time: f64, seeds: &[usize]) {
         let gravity = self.sim.options.gravity;
         for &i in seeds {
@@ -65,9 +66,10 @@ impl Step<'_> {
         self.holding = self.holding && self.sim.bodies.iter().any(|body| body.held);
     }
 
-    /// What follows its motion and the body that it presses on, if all that contacts connect with the bodies of these events has no
-    /// motion with which it keeps apart for as long as that takes to close a gap. What follows its motion goes on as in its present flight until
-    /// that ends, and then by its motion: it may turn back there.
+    /// The kinematic body and the body on which it presses, if the bodies that contacts connect with those of
+    /// these events are proven to have no motion with which they keep apart for as long as it takes to close
+    /// a gap. A kinematic body goes on in its present flight until that ends, and then by its motion: it may
+    /// turn back there.
     fn proven_crushed(&mut self, time: f64, events: &[Event]) -> Option<[usize; 2]> {
         if !self.sim.bodies.iter().any(RigidBody::is_driven) {
             return None;
@@ -101,7 +103,8 @@ impl Step<'_> {
         Some(if is_driven(contact.a) { [contact.a, contact.b] } else { [contact.b, contact.a] })
     }
 
-    /// The contacts, with as much more room each as what follows its motion may be off its flight until this time. None: it is not known.
+    /// The contacts, each with as much more room as its kinematic bodies may deviate from their flights until
+    /// this time. None: that is not known.
     fn with_what_strays(&self, contacts: &[ContactPoint], until: f64) -> Option<Vec<ContactPoint>> {
         let strays = |i: usize| {
             let body = &self.sim.bodies[i];
@@ -113,8 +116,8 @@ impl Step<'_> {
         contacts.iter().map(with).collect()
     }
 
-    /// The contacts within the gap or so of all that they connect with the bodies of some events, as they are at a time of the flights, with
-    /// what each may slide; those whose direction turns by itself prove nothing.
+    /// The contacts within about the gap of all bodies that they connect with those of some events, at a time
+    /// of the flights, with the way that each may slide. Those whose direction turns by itself prove nothing.
     fn connected_contacts(&mut self, time: f64, events: &[Event]) -> Vec<Sliding> {
         let mut ring: Vec<usize> = events.iter().flat_map(|event| event.bodies).collect();
         let (mut seen, mut found) = (BTreeSet::new(), BTreeMap::<Key, Vec<Sliding>>::new());
@@ -129,7 +132,7 @@ impl Step<'_> {
                     continue;
                 }
                 let material = sim.material(key.0, key.1);
-                // What is too close to be measured is no part of a proof.
+                // Contacts too close to be measured are no part of a proof.
                 let measured =
                     measure(&sim.bodies, key, time, AROUND * gap, gap, material, &[]).unwrap_or_default();
                 let is_near = |contact: &ContactPoint| contact.distance <= NEAR * gap;
@@ -145,7 +148,7 @@ impl Step<'_> {
         found.into_values().flatten().collect()
     }
 
-    /// Neither a proof that the body is crushed nor room for it.
+    /// The error that there is neither a proof that the body is crushed nor room for it.
     fn cornered(&self, pushing: usize, cornered: usize, time: f64) -> StepError {
         let name = |i: usize| self.sim.bodies[i].name.to_string();
         StepError::Cornered { pushing: name(pushing), cornered: name(cornered), time }

@@ -1,4 +1,4 @@
-//! One step: a velocity solve, then flights from contact to contact.
+//! One step: velocities are solved for, then bodies fly from event to event.
 
 mod connected;
 mod event;
@@ -24,40 +24,43 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-/// Pairs, events or islands up to which threads cost more than they save.
+/// Up to this number of pairs, events or islands threads cost more than they save.
 const FEW_ITEMS: usize = 7;
 
-/// Events of one pair at one and the same time, after which it is held.
+/// A pair with more events than this at one time is held.
 const MOST_AT_ONCE: u32 = 8;
 
-/// Events of bodies that follow their motions, for each that a step has: what stands still in their way would be crushed.
+/// Kinematic bodies may have this many events for each that a step may have: a body that is held in their way
+/// would be crushed.
 const DRIVEN: u32 = 16;
 
-/// Events at which bodies bounce, for each that a step has: what bounces to and fro between a wall and a body r times as heavy that comes towards it does
-/// so π √r times until that has turned back, 31 416 times at 10⁸, and nearly all of that may be in one step.
+/// Bounces may have this many events for each that a step may have. A body between a wall and a body r times
+/// as heavy that comes towards it bounces π √r times until that has turned back, 31 416 times at 10⁸, and
+/// nearly all of that may be in one step.
 const BOUNCES: u32 = 256;
 
-/// The part of a gap at which friction has locked what a body that follows its motion pushes: the room has been halved twenty times, and can be
-/// halved ten times more.
+/// Friction has locked what a kinematic body pushes where no more than this part of the gap is left: the room
+/// has been halved twenty times, and can be halved ten times more.
 const LOCKED: f64 = 1.0 / 1_048_576.0;
 
-/// Why velocities are solved.
+/// The reason why velocities are solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Occasion {
     /// The step begins.
     Start,
     /// Bodies meet, or flights end.
     Event,
-    /// Bodies meet that have lost some of their separation already: all that contacts connect with them makes room.
+    /// Bodies meet closer than they stopped before: all bodies that contacts connect with them are solved, to
+    /// make room.
     Cramped,
-    /// Flights that have just begun lead to contacts that are solved with them.
+    /// Flights that have just begun lead to contacts, which are solved together with them.
     Expected,
-    /// Flights that have just begun are to end at `until` at the latest.
+    /// Flights that have just begun have to end at `until` at the latest.
     Plan { until: f64 },
 }
 
 impl Occasion {
-    /// Is it something that ends flights?
+    /// Does it end flights?
     fn is_event(self) -> bool {
         matches!(self, Self::Event | Self::Cramped)
     }
@@ -69,35 +72,36 @@ pub(crate) struct Step<'s> {
     listener: &'s mut dyn ContactListener,
     start: f64,
     end: f64,
-    /// Features up to this distance are contacts that a flight may have to heed.
+    /// Features up to this distance are contacts that a flight may have to obey.
     margin: f64,
     heap: BinaryHeap<Reverse<Event>>,
     report: StepReport,
     holding: bool,
-    /// What friction has locked in the way of what follows its motion: it slides freely until the step ends.
+    /// Bodies that friction has locked in the way of a kinematic body: they slide freely until the step ends.
     slips: BTreeSet<usize>,
-    /// Events so far at which bodies bounced.
+    /// The number of events so far at which bodies bounced.
     bounces: u32,
-    /// The impulses of motors so far, by joint.
+    /// The impulses of motors so far in this step, by joint.
     spent: BTreeMap<usize, f64>,
     replans: Replans,
-    /// The end of flights that were planned anew.
+    /// The time at which flights end that were planned again.
     planned: Option<f64>,
     expected: Expected,
-    /// Impulses of the present instant, and those of contacts that flights could still be planned without.
+    /// The impulses of the present instant. `undoable`: those of resting contacts, which are taken back if
+    /// flights are planned again.
     impulses: Vec<ContactPoint>,
     undoable: Vec<ContactPoint>,
-    /// Pairs between which impulses have acted, and what these did to each of the bodies.
+    /// Pairs between which impulses have acted, and what these added to the momenta of each body.
     pressed: BTreeMap<Key, [Momenta; 2]>,
-    /// Until when sensors have looked.
+    /// The time until which sensors have been evaluated.
     sensed: f64,
     /// When each body that slept was woken in this step.
     woken: Vec<Option<f64>>,
-    /// How many bodies there are, and whether joints: places that are free, and joints that are gone, count for nothing.
+    /// The number of bodies, and whether there are joints, without places of removed ones.
     count: usize,
     has_joints: bool,
     sleepers: Sleepers,
-    /// What sleeps and is to wake when the step ends.
+    /// Sleeping bodies that will wake when the step ends.
     disturbed: BTreeSet<usize>,
 }
 
@@ -140,10 +144,11 @@ impl<'s> Step<'s> {
     }
 
     pub(crate) fn run(mut self) -> Result<StepReport, StepError> {
-        // Listeners and motions are others' code: where one panics the step ends as after an error, before the panic goes on.
+        // Listeners and motions are foreign code: where one panics the step ends as after an error, then the
+        // panic goes on.
         let flown = catch_unwind(AssertUnwindSafe(|| self.fly_through().and_then(|()| self.sense(self.end))));
         let heard = catch_unwind(AssertUnwindSafe(|| self.report_impulses()));
-        // Also after an error: what was flown until then is certified.
+        // Also after an error: the flights until then are certified.
         let time = if matches!(flown, Ok(Ok(()))) { self.end } else { self.sim.time };
         self.finish(time);
         heard.and(flown).unwrap_or_else(|panic| resume_unwind(panic))?;
@@ -193,7 +198,8 @@ impl<'s> Step<'s> {
             let (hold, go_on): (Vec<Event>, Vec<Event>) = met.into_iter().partition(|event| {
                 let count = last.1.entry(event.bodies).or_default();
                 *count += 1;
-                // Also flights that end again and again at one time: a step ends, whatever comes.
+                // This holds flights, too, that end again and again at one time, so that each step comes to
+                // its end.
                 let again = *count > MOST_AT_ONCE;
                 let is_driven = event.bodies.into_iter().any(|i| self.sim.bodies[i].is_driven());
                 let over = if self.bounces_at(event) { has_bounced } else { over[usize::from(is_driven)] };
@@ -213,14 +219,14 @@ impl<'s> Step<'s> {
                 self.solve_expected(event.time)?;
             } else {
                 self.hold(event.time, &hold)?;
-                // Those whose bodies fly on as before are next.
+                // Events whose bodies fly on as before are next.
                 self.heap.extend(go_on.into_iter().map(Reverse));
             }
         }
         Ok(())
     }
 
-    /// The next event before the end of the step whose bodies still fly as they did.
+    /// The next event before the end of the step whose bodies have not begun other flights since.
     fn next_event(&mut self) -> Option<Event> {
         while let Some(Reverse(event)) = self.heap.pop() {
             if self.is_current(&event) {
@@ -234,7 +240,7 @@ impl<'s> Step<'s> {
         (0..2).all(|k| self.sim.bodies[event.bodies[k]].version == event.versions[k])
     }
 
-    /// Do bodies bounce there that nothing drives?
+    /// Do bodies bounce at this event, without a kinematic one among them?
     fn bounces_at(&self, event: &Event) -> bool {
         let [a, b] = event.bodies;
         event.cause == Cause::Contact
@@ -243,15 +249,16 @@ impl<'s> Step<'s> {
             && self.sim.material(a, b).restitution > 0.0
     }
 
-    /// Do these bodies meet at less than the distance at which they stopped before?
+    /// Do these bodies meet closer than they stopped before?
     fn is_cramped(&self, event: &Event) -> bool {
         let key = (event.bodies[0], event.bodies[1]);
         event.cause == Cause::Contact
             && self.sim.pairs.get(&key).is_some_and(|pair| pair.nearest.is_some_and(|d| d <= HIT * pair.gap))
     }
 
-    /// What friction locks in the way of a body that follows its motion, until hardly any room is left, slides freely for the rest of the step: the
-    /// other one does not yield, and no velocities obey the law of friction.
+    /// Dynamic bodies that friction locks in the way of a kinematic body until hardly any room is left slide
+    /// freely for the rest of the step: the kinematic body does not yield, and no velocities obey the law of
+    /// friction.
     fn let_slip(&mut self, events: &[Event]) {
         for event in events.iter().filter(|event| event.cause == Cause::Contact) {
             let key = (event.bodies[0], event.bodies[1]);
@@ -264,7 +271,7 @@ impl<'s> Step<'s> {
         }
     }
 
-    /// All events whose brackets overlap the first one's, and the bodies of them.
+    /// All events whose brackets overlap the first one's, and their bodies.
     fn gather(&mut self, first: Event) -> (Vec<Event>, Vec<usize>) {
         let (mut met, mut later) = (vec![first], Vec::new());
         while let Some(Reverse(event)) = self.heap.peek().copied() {
@@ -275,13 +282,14 @@ impl<'s> Step<'s> {
             if !self.is_current(&event) {
                 continue;
             }
-            // What follows its motion begins its next flight where the present one ends, and not before.
+            // A kinematic body begins its next flight where the present one ends, and not before.
             let follows = event.cause == Cause::Horizon && self.sim.bodies[event.bodies[0]].is_kinematic();
             if follows && event.time > first.time { later.push(event) } else { met.push(event) }
         }
         self.heap.extend(later.into_iter().map(Reverse));
         let mut seeds: Vec<usize> = met.iter().flat_map(|event| event.bodies).collect();
-        // Flights that were planned to end here end with the event: what is left of them would be a segment far from their middle.
+        // Flights that were planned to end here end with the event: their short rest would be a segment whose
+        // velocity is far from that of its middle.
         if let Some(planned) = self.planned.take() {
             let ends = |body: &RigidBody| body.is_dynamic() && !body.held && body.horizon == planned;
             seeds.extend((0..self.sim.bodies.len()).filter(|&i| ends(&self.sim.bodies[i])));
@@ -291,7 +299,7 @@ impl<'s> Step<'s> {
         (met, seeds)
     }
 
-    /// The segment that is recorded ends here.
+    /// Ends the recorded segment.
     fn cut(&mut self, time: f64) {
         if self.holding {
             self.sim.recorder.cut_skipped(time);
@@ -300,7 +308,7 @@ impl<'s> Step<'s> {
         }
     }
 
-    /// Everything to the end of the step.
+    /// Moves all bodies to the end of the step, and puts to sleep or wakes what has to be.
     fn finish(&mut self, time: f64) {
         let gravity = self.sim.options.gravity;
         #[cfg(feature = "audit")]
@@ -339,8 +347,8 @@ mod tests {
     use d2m_motion::ConstantTwist;
     use std::sync::Arc;
 
-    /// An event whose bracket holds the end of a kinematic flight leaves that flight its own end: without it the flight would be queried
-    /// past what it is.
+    /// An event whose bracket holds the end of a kinematic flight does not end that flight: otherwise it
+    /// would be queried past its end.
     #[test]
     fn kinematic_flights_end_where_they_end() {
         let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=1&y=1&z=1").unwrap()));

@@ -1,4 +1,4 @@
-//! Flights that events would cut are planned anew, to end about where the event is.
+//! Flights that an event would cut short are planned again, so that they end about where the event is.
 
 use super::event::{Cause, Event};
 use super::{Occasion, Step};
@@ -7,36 +7,39 @@ use crate::body::rigid_body::RigidBody;
 use crate::flight::group::CROWD;
 use glam::DVec3;
 
-/// Times that flights from one and the same instant are planned anew.
+/// How often flights from one instant are planned again at most.
 const MOST_AT_ONCE: u32 = 3;
-/// And flights of bodies that are planned anew in a whole step: so many, and so many for each body there is. A budget, like the
-/// number of events, which is 128 by default: two bodies each; and for crowds in which all meet, the pair that each of two
-/// neighbours meets, twice. Crowds of more bodies than so many have the budget of that many: there is always something that meets, and a
-/// plan for all of a thousand bodies costs as much as a step. What goes beyond it is left unbalanced in the segments, and in them only.
+/// How many flights of bodies are planned again in a whole step: so many, and so many for each body. It is a
+/// budget, like the number of events (128 by default): two bodies each; and for crowds in which all meet, the
+/// pair that each of two neighbours meets, twice. Crowds of more than `MOST_BODIES` have the budget of that
+/// many: something always meets in them, and a plan for all of a thousand bodies costs as much as a step.
+/// Flights beyond the budget stay unbalanced in the segments, and in them only.
 const MOST_IN_A_STEP: usize = 256;
 const MOST_OF_A_BODY: usize = 4;
 const MOST_BODIES: usize = 64;
-/// The part of the greatest kinetic energy that a flight's early end may leave unbalanced in the segments (the momenta are right in
-/// any case): a thirty-second of the 1/128 that `docs/guarantees.md` promises, for the flights of one step that are cut one after the other.
+/// The energy that flights cut short may leave unbalanced in the segments, as a part of the largest kinetic
+/// energy (the momenta are right in any case): a thirty-second of the 1/128 that `docs/guarantees.md`
+/// promises, for the flights of one step that are cut one after the other.
 const UNBALANCED: f64 = 1.0 / 4096.0;
-/// How much later than expected a flight that is planned anew ends, as a part of what it was cut by: the body should meet what it meets before that.
+/// Flights that are planned again end later than expected by this part of the time by which they were cut:
+/// the bodies should meet before.
 const SPARE_TIME: f64 = 0.02;
 
-/// How often flights of this step have been planned anew.
+/// How often flights of this step have been planned again.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Replans {
-    /// At which instant.
+    /// The instant at which they begin.
     at: f64,
     at_once: u32,
-    /// Flights of bodies, in the whole step.
+    /// The number of flights of bodies in the whole step.
     all: usize,
 }
 
 impl Step<'_> {
-    /// A flight has the velocity of its middle. One that ends early has the velocity of a later time than its own middle: with
-    /// the force F, of the power F·v, and the time H − t by which it is cut, its energy is off by ½ F·v (H − t). Where the sum
-    /// of these counts, the flights that begin now are planned again, to end at the event. True if the flights are others now;
-    /// then the event is none.
+    /// A flight has the velocity of its middle. One that ends early has the velocity of a later time than its
+    /// own middle: its energy is off by ½ F·v (H − t), with the force F, the power F·v and the time H − t by
+    /// which it is cut. Where the sum of these is too large, the flights that begin now are planned again, to
+    /// end at the event. Returns true if they have changed; then the event is void.
     pub(super) fn plan_anew(&mut self, event: &Event) -> Result<bool, StepError> {
         let now = self.sim.time;
         if self.replans.at != now {
@@ -48,7 +51,8 @@ impl Step<'_> {
         let gravity = self.sim.options.gravity;
         let is_crowd = self.count > CROWD && !self.has_joints;
         let cut = |(i, body): (usize, &RigidBody)| {
-            // In a crowd there is always something that meets: it cuts its own bodies' flights, and the others fly on.
+            // In a crowd something always meets: an event cuts the flights of its own bodies only, and the
+            // others fly on.
             if is_crowd && !event.bodies.contains(&i) {
                 return 0.0;
             }
@@ -81,14 +85,14 @@ impl Step<'_> {
         self.replans.at_once += 1;
         self.replans.all += concerned.len();
         self.planned = Some(until);
-        // Its bodies may fly on as they do.
+        // The event counts if its bodies fly on as they do.
         self.heap.push(core::cmp::Reverse(*event));
         self.resolve(now, concerned, Occasion::Plan { until })?;
         Ok(true)
     }
 
-    /// May the rest of the step keep the plan of a flight that is cut at `time`? Its energy is then off by the power of the
-    /// forces times what its velocity leads or lags.
+    /// May the rest of the step keep the plan of a flight that is cut at `time`? Its energy is off by the
+    /// power of the forces times the time by which its velocity leads or lags.
     pub(super) fn is_balanced(&self, body: &RigidBody, time: f64) -> bool {
         let lead = body.lead.unwrap_or_default();
         let off = power(body, self.sim.options.gravity).abs() * (lead - 0.5 * (self.end - time)).abs();
@@ -106,7 +110,7 @@ impl Step<'_> {
         let (now, gravity) = (self.sim.time, self.sim.options.gravity);
         let bodies = event.bodies.map(|i| &self.sim.bodies[i]);
         let acceleration = |body: &RigidBody| {
-            // What contacts do to a body is not known before the solve.
+            // The effect of contacts on a body is not known before the solve.
             if body.is_dynamic() && body.free {
                 gravity + body.force * body.inverse_mass
             } else {
@@ -128,7 +132,7 @@ impl Step<'_> {
     }
 }
 
-/// Of the forces on a body in its present flight.
+/// The power of the forces on a body in its present flight.
 fn power(body: &RigidBody, gravity: DVec3) -> f64 {
     let velocity = body.present_velocity();
     (gravity * body.mass + body.force).dot(velocity.linear) + body.torque.dot(velocity.angular)

@@ -1,4 +1,4 @@
-//! Velocities of the flights that begin at an event.
+//! Solves the velocities of the flights that begin at an event.
 
 use super::connected::{Group, Sleepers};
 use super::{FEW_ITEMS, Occasion, Step};
@@ -13,24 +13,27 @@ use d2m_mesh::parallel::map_owned;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Rounds of bodies that others press on, after which all that contacts connect with them are solved together.
+/// Rounds in which bodies are added on which others press; then all bodies that contacts connect are solved.
 const MOST_ROUNDS: u32 = 4;
-/// Rounds in which what sleeps wakes by hits, after which all of it does that contacts connect.
+/// Rounds in which sleeping bodies wake where they are hit; then all sleeping bodies that contacts connect
+/// wake.
 const MOST_HITS: u32 = 16;
-/// A solution that leads no point of a body's surface further off than this part of the gap in a step leaves its flight as it is:
-/// a sixty-fourth of [`LEEWAY`], so that all contacts of a body together stay within that.
+/// A solution that moves no surface point of a body by more than this part of the gap in a step leaves its
+/// flight as it is: a sixty-fourth of [`LEEWAY`], so that all contacts of a body together stay within that.
 const SAME: f64 = 1.0 / 1024.0;
-/// Bodies whose expected contacts are solved, in a crowd, with what they press on and not with all that is connected.
+/// Expected contacts of up to so many bodies of a crowd are solved with the bodies on which these press, and
+/// not with all that are connected.
 const FEW: usize = 8;
-/// The part of the gap by which a contact may close in what is left of the step before its body is solved with the others.
+/// The part of the gap by which a contact may close in the rest of the step before its body is solved with
+/// the others.
 pub(super) const LEEWAY: f64 = 1.0 / 16.0;
 
-/// What is solved at once.
+/// The bodies that are solved at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Scope {
-    /// Some bodies, and then those that they press on or let go.
+    /// Some bodies, and then those on which they press or that they let go.
     Nearby,
-    /// All that contacts connect.
+    /// All bodies that contacts connect.
     Connected,
 }
 
@@ -64,7 +67,8 @@ impl Step<'_> {
                 group.has_measured(key) || !(bodies[key.0].is_awake() || bodies[key.1].is_awake())
             });
         }
-        // An event's own bodies begin another flight in any case: their present ones are certified no further.
+        // The bodies of an event begin another flight in any case: their present ones are certified no
+        // further.
         let most = SAME * self.sim.options.gap / self.sim.options.step;
         let is_same = |body: &RigidBody, i: usize, velocity: Velocity, horizon: f64| {
             let off = velocity - body.present_velocity();
@@ -120,7 +124,7 @@ impl Step<'_> {
         self.query(time, &changed)
     }
 
-    /// The error that names the fastest of some bodies.
+    /// The error that names the fastest body of a solution.
     fn too_fast(&self, part: &Solved, time: f64) -> StepError {
         let speed = |push: &&Push| push.velocity.surface_speed(self.sim.bodies[push.body].radius);
         let fastest = part.bodies.iter().max_by(|x, y| speed(x).total_cmp(&speed(y)));
@@ -141,7 +145,8 @@ impl Step<'_> {
         Ok(())
     }
 
-    /// Among what the bodies of a solution are: only what the step's own one leaves is solved again in any case.
+    /// Among how many bodies a solution is: only residuals of the solve at the start of a step are solved
+    /// again anyway.
     fn company(&self, occasion: Occasion) -> Company {
         match occasion {
             _ if self.count <= CROWD => Company::Few,
@@ -150,8 +155,9 @@ impl Step<'_> {
         }
     }
 
-    /// Velocities of the members from the contacts between them, and with what nothing moves. Islands of which no body
-    /// is `renewed` (ascending) are as they were solved before; the others begin with the impulses that were found then.
+    /// The velocities of the members from the contacts between them and with bodies that impulses do not
+    /// move. Islands without a `renewed` body (ascending) keep their solution `before`; the others begin with
+    /// its impulses.
     fn solve_islands(
         &self,
         group: &mut Group,
@@ -186,9 +192,10 @@ impl Step<'_> {
         })
     }
 
-    /// An event changes the velocities of its bodies, and of those that they then press on or let go: a heap of bodies at rest is
-    /// not solved again for what happens on top of it. The same holds for contacts that are expected in a crowd. Of a crowd what sleeps
-    /// is solved where what it bears changes.
+    /// An event changes the velocities of its bodies, and of those on which they then press or that they let
+    /// go: a heap of bodies at rest is not solved again for an event on top of it. The same holds for
+    /// contacts that are expected in a crowd. Sleeping bodies of a crowd are solved where the load on them
+    /// changes.
     fn solve_in_rounds(
         &mut self,
         group: &mut Group,
@@ -227,13 +234,13 @@ impl Step<'_> {
         Ok(solved)
     }
 
-    /// What the group's contacts connect with it and is none of it yet.
+    /// The bodies that the group's contacts connect with it and that are not members yet.
     fn beyond(&self, group: &Group) -> Vec<usize> {
         let is_beyond = |i: &usize| !group.is_member[*i] && group.may_move(&self.sim.bodies[*i]);
         group.contacts.iter().flat_map(|c| [c.a, c.b]).filter(is_beyond).collect()
     }
 
-    /// Solves for the members after these have been admitted.
+    /// Solves the velocities of the members after some have been admitted.
     fn solve_admitted(
         &mut self,
         group: &mut Group,
@@ -252,7 +259,7 @@ impl Step<'_> {
         Ok(self.solve_islands(group, clock, before, &renewed, occasion))
     }
 
-    /// With which a body flies on.
+    /// The velocity with which a body flies on.
     pub(super) fn next_velocity(
         &self,
         i: usize,
@@ -270,8 +277,8 @@ impl Step<'_> {
         }
     }
 
-    /// The bodies outside of the group that members with these velocities come closer to than contacts allow, or that they were pressed
-    /// by and leave, ascending.
+    /// The bodies outside of the group, ascending, that members with these velocities approach more closely
+    /// than contacts allow, or that pressed on members that leave them.
     fn pressed(&self, group: &Group, solved: &[Solved], clock: Clock, scope: Scope) -> Vec<usize> {
         if scope == Scope::Connected {
             return Vec::new();
@@ -285,7 +292,7 @@ impl Step<'_> {
             let (distance, gap) = (contact.distance, contact.gap);
             distance + rate * length < distance.min(gap) - LEEWAY * gap
         };
-        // What pressed on a member from outside and does so no more.
+        // A body outside pressed on a member and does so no more.
         let lets_go = |contact: &&ContactPoint| {
             let before = [contact.a, contact.b].map(|i| self.sim.bodies[i].present_velocity());
             let rate = contact.rate(velocity(contact.a), velocity(contact.b));
@@ -305,7 +312,8 @@ impl Step<'_> {
         pressed
     }
 
-    /// Keeps the impulses until the flights are flown, and those of the step's own solve for the next one to begin with.
+    /// Keeps the impulses until the flights are flown. Those of the solve at the start of the step are the
+    /// warm start of the next step.
     fn keep(&mut self, solved: Solved, occasion: Occasion) {
         let is_start =
             occasion == Occasion::Start || (occasion == Occasion::Expected && self.sim.time == self.start);
@@ -323,7 +331,7 @@ impl Step<'_> {
         append(&mut self.undoable, solved.rests);
     }
 
-    /// The impulses of the present instant are those of the segment that ends here.
+    /// Reports the impulses of the present instant, as those of the segment that ends here.
     pub(super) fn report_impulses(&mut self) {
         let [first, last] = [&mut self.impulses, &mut self.undoable].map(core::mem::take);
         let impulses = || first.iter().chain(&last);
@@ -359,7 +367,7 @@ impl Step<'_> {
     }
 }
 
-/// Puts contacts behind others. They are large: behind none they are not copied.
+/// Appends contacts to others. They are large: they are not copied if there are no others.
 fn append(contacts: &mut Vec<ContactPoint>, mut others: Vec<ContactPoint>) {
     if contacts.is_empty() {
         *contacts = others;
@@ -368,7 +376,7 @@ fn append(contacts: &mut Vec<ContactPoint>, mut others: Vec<ContactPoint>) {
     }
 }
 
-/// The velocities that solutions have found, by body.
+/// The velocities of the solutions, by body.
 pub(super) fn found_velocities(solved: &[Solved]) -> BTreeMap<usize, Velocity> {
     solved.iter().flat_map(|part| &part.bodies).map(|push| (push.body, push.velocity)).collect()
 }

@@ -1,4 +1,4 @@
-//! What sensors find.
+//! Sensors: which bodies they meet.
 
 use super::{FEW_ITEMS, Step};
 use crate::StepError;
@@ -10,8 +10,8 @@ use d2m_bvh::{
 use d2m_mesh::parallel::map_owned;
 
 impl Step<'_> {
-    /// Which bodies sensors meet on the flights that all have now, until a time to which they fly: outside of what is reported each pair is
-    /// proven clear at every time.
+    /// Finds the bodies that sensors meet on the present flights of all bodies, until a time to which these
+    /// fly. Outside of what is reported each pair is proven clear at every time.
     pub(super) fn sense(&mut self, until: f64) -> Result<(), StepError> {
         let from = core::mem::replace(&mut self.sensed, until);
         let sim = &*self.sim;
@@ -20,7 +20,7 @@ impl Step<'_> {
             .flat_map(|sensor| of(Role::Body).map(move |body| (sensor.min(body), sensor.max(body))))
             .filter(|&(a, b)| sim.is_admitted(a, b))
             .collect();
-        // What a sensor no longer looks for is in it no more.
+        // A body that a sensor no longer looks for has left it.
         let is_left = |&&(a, b): &&(usize, usize)| {
             [a, b].into_iter().any(|i| sim.bodies[i].role == Role::Sensor) && !sim.is_admitted(a, b)
         };
@@ -51,7 +51,7 @@ impl Step<'_> {
     }
 }
 
-/// When two bodies are clear of each other in their flights.
+/// When two bodies are clear of each other in their flights, and when not.
 fn spans(
     a: &RigidBody,
     b: &RigidBody,
@@ -62,7 +62,7 @@ fn spans(
     if are_spheres_apart(a, b, window.start(), window.end(), 0.0) {
         return all(SpanStatus::Clear);
     }
-    // What a solid holds is in it, whatever it is itself.
+    // A body inside of a solid is in contact with it, even if it is a surface itself.
     let [one, two] = [a, b].map(|body| body.moving_on(&body.flight));
     let options = QueryOptions::default().with_budget(Budget::UNLIMITED.with_node_tests(node_tests));
     if a.stands_still() && b.stands_still() {

@@ -1,4 +1,4 @@
-//! Bodies that sleep in a heap of which parts move.
+//! Sleeping bodies in a heap of which parts move.
 
 use super::connected::{Group, Sleepers};
 use super::resolve::found_velocities;
@@ -11,26 +11,30 @@ use crate::rest::quiet::QUIET_TIME;
 use d2m_contact::{ContactPoint, Momenta};
 use std::collections::BTreeMap;
 
-/// What sleeps wakes, when the step ends, where what touches it does more to it than what it has borne: by this part of all that it bears
-/// in a step and of the resting speed, which its surface would gain. Where it is all of that it is solved with what touches it.
+/// A sleeping body wakes, when the step ends, where bodies that touch it change what it bears by more than
+/// this part of a limit: the speed that its whole load in a step would give it, and the resting speed, by
+/// which its surface would become faster. From the whole limit on it is solved with them at once.
 const DISTURBED: f64 = 0.5;
-/// The part of the resting speed in that where bodies meet: what they bring is there only once.
+/// The part of the resting speed that counts in that limit where bodies meet: an impact acts only once.
 const MET: f64 = 1.0 / 8.0;
 
-/// What moves takes along what sleeps on it: by so much of g t², with the length t of a flight, more than what is quiet moves. What loses its support
-/// falls by four times that. Speeds of solutions on the way to one that is precise are off by less.
+/// A sleeping body wakes with a body that it touches and that moves by so much of g t² more than quiet bodies
+/// do in flights of length t. A body without support falls four times as far. Speeds of solutions on the way
+/// to a precise one are off by less.
 const FALLEN: f64 = 0.125;
 
-/// The time about which what bodies bear is averaged: as long as what has woken stays awake at least.
+/// The time over which the load of bodies is averaged, about: as long as a woken body stays awake at least.
 const WEIGHED_TIME: f64 = 0.25 * QUIET_TIME;
 
-/// The time about which what is done to bodies that sleep, besides that, is averaged: solutions shift a tenth and more of the load between contacts
-/// from step to step.
+/// The time over which other impulses on sleeping bodies are averaged, about: solutions shift a tenth and
+/// more of the load between contacts from step to step.
 const OWED_TIME: f64 = 4.0 * QUIET_TIME;
-/// The part of what friction could hold of the load of a body, with the least coefficient of its contacts, that may last without waking it.
+/// Friction could hold its least coefficient times the load of a body; this part of that may act on the body
+/// for any time without waking it.
 const HELD: f64 = 0.25;
 
-/// What is done to a body that sleeps: what more than it has borne from what is solved, and all impulses that it bears in that time.
+/// The change of what acts on a sleeping body: the impulses of the solution without its load, and the load in
+/// that time.
 #[derive(Clone, Copy, Debug, Default)]
 struct Change {
     momenta: Momenta,
@@ -38,7 +42,8 @@ struct Change {
 }
 
 impl Step<'_> {
-    /// A body that slept moves from `time` on. What has pressed on it at this instant, and is about to be solved again, has pressed on what holds it.
+    /// Wakes a body, which moves from `time` on. Impulses on it at this instant that are about to be taken
+    /// back and solved again have acted on what holds it, not on its momenta: they are added to these first.
     pub(super) fn wake(&mut self, i: usize, time: f64, occasion: Occasion) {
         let body = &mut self.sim.bodies[i];
         body.wake(time);
@@ -50,9 +55,11 @@ impl Step<'_> {
         }
     }
 
-    /// At the end of a step: what touches a body that is awake does to it on average, and what is done to those that sleep besides what they bore
-    /// when they fell asleep. Where that lasts it wakes them, however little of it is in a step, but for a part of what friction holds. Less than what
-    /// was borne, in its direction, does not count: of what does not move away any push up to that obeys the law.
+    /// At the end of a step, averages the impulses on bodies that are awake, pair by pair, and on sleeping
+    /// ones the difference to what they bore when they fell asleep. A difference that lasts wakes a body,
+    /// however little it is in a step, if it exceeds a part of what friction holds. Bearing less than before,
+    /// in the same direction, does not count: on a body that does not move away any push up to that obeys the
+    /// law.
     pub(super) fn weigh(&mut self, end: f64) {
         if self.sleepers == Sleepers::Wake {
             return;
@@ -101,8 +108,8 @@ impl Step<'_> {
         self.woken[i] == Some(time)
     }
 
-    /// Of these bodies those that are solved from the begin: where parts of heaps sleep, what sleeps is not, unless something that follows a
-    /// motion meets it.
+    /// The bodies among these that are solved from the beginning. Where parts of heaps sleep, sleeping ones
+    /// are left out, unless one of the bodies is kinematic.
     pub(super) fn awake_or_driven(&self, mut seeds: Vec<usize>, sleepers: Sleepers) -> Vec<usize> {
         let bodies = &self.sim.bodies;
         if sleepers == Sleepers::Bear && !seeds.iter().any(|&i| bodies[i].is_kinematic()) {
@@ -111,7 +118,8 @@ impl Step<'_> {
         seeds
     }
 
-    /// The bodies that sleep and that these solutions hit, ascending; those that they do less to wake when the step ends.
+    /// The sleeping bodies, ascending, that these solutions hit. Those that are hit by less will wake when
+    /// the step ends.
     pub(super) fn hit(
         &mut self,
         group: &Group,
@@ -136,7 +144,7 @@ impl Step<'_> {
             add(contact.a, contact.exerted(0), 0.0);
             add(contact.b, contact.exerted(1), 0.0);
         }
-        // What has been solved in this step before has borne its part already.
+        // Contacts that have been solved in this step before have borne their part of the load already.
         let begins = |i: usize| clock.now == self.start || self.has_woken(i, clock.now);
         let length = clock.end - clock.now;
         for (&(a, b), pair) in &self.sim.pairs {
@@ -164,7 +172,8 @@ impl Step<'_> {
         hit
     }
 
-    /// The bodies that sleep and that touch what moves, with these solutions, by more than what is quiet does: they wake with it and not after it.
+    /// The sleeping bodies that touch a body which these solutions move by more than quiet ones move: they
+    /// wake at the same time, not later.
     fn left(&self, group: &Group, solved: &[Solved], clock: Clock) -> Vec<usize> {
         let (bodies, gap) = (&self.sim.bodies, self.sim.options.gap);
         let found = found_velocities(solved);

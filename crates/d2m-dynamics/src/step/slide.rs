@@ -1,4 +1,5 @@
-//! How far closest points may slide on their features until they may slip off, and which points beside them may further.
+//! How far closest points may slide before they may slip off their features, and points beside them that may
+//! slide further.
 
 use crate::body::rigid_body::RigidBody;
 use crate::pairs::closest_features::vertices_of;
@@ -6,20 +7,23 @@ use d2m_contact::{ASKEW, CROSSING, ContactPoint, LEVER, ROUNDED};
 use d2m_feature::{FeaturePair, estimate_closest_point};
 use glam::DVec3;
 
-/// The part of the way to the corners and the middle of a triangle by which points beside a closest one are off it, 2⁻⁸: where that way is as long
-/// as an arm, 16 times what bodies move while they are proven to be crushed.
+/// Points beside a closest one are taken at this part of the way from it to the corners and the middle of a
+/// triangle, 2⁻⁸. Where that way is as long as an arm, it is 16 times as far as bodies move while they are
+/// proven to be crushed.
 const BESIDE: f64 = 1.0 / (1u64 << 8) as f64;
 
-/// By how much a direction may be off that of a face, half of what is proven for: the other half is for rounding.
+/// By how much a direction may be off that of a face: half of what the proof allows, since the other half is
+/// for rounding.
 const MOST: f64 = 0.5 * ASKEW;
 
-/// A contact, and how far the bodies of it may move against each other, up to which its direction turns no faster than they do and its features stay
-/// those that keep its points apart.
+/// A contact, and how far its bodies may move against each other while its direction turns no faster than
+/// they do and its features keep its points apart.
 pub(super) type Sliding = (ContactPoint, f64);
 
-/// A contact with what it may slide, where its direction is that of a face or across edges, and points of one surface beside it over a flat part of
-/// the other one that may slide more: where faces of the same size lie on each other, the closest points of their corners may slip off at once, but
-/// those a little further in not.
+/// The contact with the way that it may slide, if its direction is that of a face or across edges, and points
+/// of one surface beside it that may slide further over a flat part of the other surface. Where faces of the
+/// same size lie on each other, the closest points are corners that may slip off at once; points a little
+/// further in may not.
 pub(super) fn slidings(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) -> Vec<Sliding> {
     let own = slide(contact, bodies, time);
     let mut found: Vec<Sliding> = own.map(|slide| (*contact, slide)).into_iter().collect();
@@ -28,13 +32,14 @@ pub(super) fn slidings(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f6
     found
 }
 
-/// Points of each surface near a contact over a flat part of the other one, on the side of it that the contact is on, by more than rounding.
+/// Points of each surface near a contact that lie over a flat part of the other surface, on the contact's
+/// side of it and off it by more than rounding.
 fn beside(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) -> Vec<Sliding> {
     let meshes = bodies.map(|body| body.tree.mesh());
     let features = vertices_of(contact.feature, meshes);
     let poses = bodies.map(|body| body.pose_at(time));
     let radii = bodies[0].rounding + bodies[1].rounding;
-    // Over body k.
+    // The point as seen from body k, over a flat part of it.
     let over = |point: DVec3, k: usize| {
         let local = poses[k].inverse_transform_point(point);
         // From the flat part to the other body.
@@ -65,9 +70,10 @@ fn beside(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) -> Vec<Sli
     found
 }
 
-/// How far the bodies of a contact may move against each other, up to which its direction turns no faster than they do and its features stay those
-/// that are closest: as far as the flat part of the surface below it goes on, or, across two edges that cross at no small angle, the part of
-/// [`LEVER`] of what is left of them. None: the direction is none of a face or of two such edges, as that between two corners, which turns anyhow.
+/// How far the bodies of a contact may move against each other while its direction turns no faster than they
+/// do and its features stay the closest ones: as far as the flat part of the surface below goes on; or,
+/// across two edges that cross at no small angle, the part of [`LEVER`] of the rest of these. None: the
+/// direction is not that of a face or of two such edges, as between two corners, where it turns in any case.
 fn slide(contact: &ContactPoint, bodies: [&RigidBody; 2], time: f64) -> Option<f64> {
     let meshes = bodies.map(|body| body.tree.mesh());
     let features = vertices_of(contact.feature, meshes);
@@ -133,8 +139,8 @@ mod tests {
         contacts(bodies).iter().map(|contact| slide(contact, [&bodies[0], &bodies[1]], 0.0)).collect()
     }
 
-    /// A bar with an edge on top, and one across it, or almost along it, whose lowest edge is a gap above: they cross in their middles, or at 0.3 from
-    /// an end of the upper one.
+    /// A bar with an edge on top, and one across it, or almost along it, whose lowest edge is a gap above:
+    /// they cross in their middles, or at 0.3 from an end of the upper one.
     #[test]
     fn what_is_left_of_edges_counts_a_tenth() {
         let bar = "box?x=1&y=0.1&z=0.1";
@@ -154,7 +160,8 @@ mod tests {
         assert!(slides(&above(0.0, 0.4)).iter().all(Option::is_none));
     }
 
-    /// A box that stands a gap above a plate, at its middle and near its rim: half of what is left of the plate, whichever triangles meet there.
+    /// A box that stands a gap above a plate, at its middle and near its rim, may slide half of the way to
+    /// the rim, whichever triangles meet there.
     #[test]
     fn faces_count_half_of_what_is_left_of_them() {
         let plate = "box?x=1&y=0.1&z=1";
@@ -172,8 +179,9 @@ mod tests {
         }
     }
 
-    /// A box on one of the same size, upright and leaning: points beside each corner may slide by some of the way that they are off it, at the
-    /// distance that the leaning face has there. Behind the face, as seen along a direction that points into it, there are none.
+    /// A box on one of the same size, upright and leaning: points beside each corner may slide by some of
+    /// their distance from it, and are at the distance that the leaning face has there. Behind the face, as
+    /// seen along a direction that points into it, there are none.
     #[test]
     fn points_beside_corners_of_equal_faces_may_slide() {
         let cube = "box?x=0.5&y=0.5&z=0.5";
