@@ -1,42 +1,44 @@
-//! For how long a body has been quiet.
+//! How long a body has been quiet: slow enough, for long enough, to sleep.
 
 use crate::SimulationOptions;
 use glam::{DQuat, DVec3};
 
-/// How long, in seconds of gravity's scale or plain units of time without gravity.
+/// The time for which bodies have to be quiet before they sleep, in seconds or the user's unit of time.
 pub(crate) const QUIET_TIME: f64 = 0.5;
-/// The part of the gap by which a surface may move in that time.
+/// Surfaces of quiet bodies move by this part of the gap at most in that time.
 const QUIET_WAY: f64 = 0.1;
-/// And among many bodies: of a heap at rest solutions move single bodies by up to a fifth of a gap in that time.
+/// The same among many bodies: solutions move single bodies of a heap at rest by up to a fifth of a gap in
+/// that time.
 const SHAKEN_WAY: f64 = 0.25;
-/// Of the speed of quiet bodies, the part that counts as standing still: what no friction brakes goes on at any other speed.
+/// Up to this part of the speed of quiet bodies a body stands still. One that no friction brakes keeps any
+/// other speed.
 const STILL: f64 = 1.0 / 1024.0;
-/// By how much more a body may be faster than it was in its quiet time.
+/// By this factor a body may be faster than it was in its quiet time.
 const GROWTH: f64 = 1.0625;
 
-/// What can be said of a body's rest.
+/// How the rest of a body is recognised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rest {
-    /// No friction brakes it: it rests only where it stands still.
+    /// No friction brakes the body: it rests only where it stands still.
     Unbraked,
-    /// By its speed: what a force speeds up is not at rest, however slow it is.
+    /// By its speed: a body that a force accelerates is not at rest, however slow it is.
     BySpeed,
-    /// By its way: among many bodies solutions shake it.
+    /// By its displacement: among many bodies solutions shake it.
     ByWay,
 }
 
-/// Since when, and where.
+/// For how long a body has been quiet, and where it was then.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Quiet {
     time: f64,
-    /// How fast its surface was at least in that time.
+    /// The lowest speed of its surface in that time.
     slowest: f64,
     /// Where it was when that began; none: it has not begun.
     place: Option<(DVec3, DQuat)>,
 }
 
-/// Where a body's surface is after a step, and how fast in it.
+/// Where the surface of a body is after a step, and how fast in it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
     pub(crate) position: DVec3,
@@ -46,22 +48,23 @@ pub(crate) struct Surface {
 }
 
 impl Quiet {
-    /// Has it been so for long enough?
+    /// Has it been quiet for long enough to sleep?
     pub(crate) fn is_long(&self) -> bool {
         self.time >= QUIET_TIME
     }
 
-    /// Has it moved in the last step, by more than what is quiet does?
+    /// Has it moved in the last step, by more than quiet bodies do?
     pub(crate) fn has_moved(&self) -> bool {
         self.time == 0.0
     }
 
-    /// For less than long enough: what wakes because something else is done to it falls asleep again soon, unless it moves.
+    /// Quiet for most of the time: a body that wakes because its load changes falls asleep again soon, unless
+    /// it moves.
     pub(crate) fn drowsy(self) -> Self {
         Self { time: 0.75 * QUIET_TIME, ..self }
     }
 
-    /// After a step of this length.
+    /// Counts a step of this length.
     pub(crate) fn go_on(&mut self, surface: Surface, rest: Rest, step: f64, options: &SimulationOptions) {
         let way = QUIET_WAY * options.gap;
         let still = STILL * way / QUIET_TIME;
@@ -80,12 +83,12 @@ impl Quiet {
         }
     }
 
-    /// Is a surface further from where it was in the quiet time than solutions shake it, and by more than this?
+    /// Is a surface off its place of the quiet time by more than solutions shake it, and this much?
     pub(crate) fn is_left_by(&self, surface: Surface, gap: f64, more: f64) -> bool {
         self.way_to(surface).is_none_or(|way| way > SHAKEN_WAY * gap + more)
     }
 
-    /// How far a point of the surface has come at most.
+    /// The largest displacement of a point of the surface since the quiet time began.
     fn way_to(&self, surface: Surface) -> Option<f64> {
         let (position, orientation) = self.place?;
         let turn = surface.orientation * orientation.conjugate();
@@ -102,7 +105,8 @@ mod tests {
     const ONWARDS: [f64; 2] = [1.0, 1.0];
     const BACK_AND_FORTH: [f64; 2] = [1.0, -1.0];
 
-    /// Steps of a hundredth, two in each of the directions in turn: for how long the body has been quiet after the quiet time.
+    /// Steps of a hundredth, two in each of the directions in turn: for how long the body has been quiet
+    /// after the quiet time.
     fn quiet_after(rest: Rest, part: f64, directions: [f64; 2]) -> f64 {
         let options = SimulationOptions::default();
         let (way, step) = (QUIET_WAY * options.gap, 0.01);
@@ -110,7 +114,7 @@ mod tests {
             Surface { position: DVec3::X, orientation: DQuat::IDENTITY, radius: 1.0, speed: 0.0 };
         let mut quiet = Quiet::default();
         for k in 0..100 {
-            // Now a fifth of the speed, now all of it.
+            // A fifth of the speed and all of it in turn.
             let speed = part * way / QUIET_TIME * if k % 2 == 0 { 0.2 } else { 1.0 };
             surface.position.x += directions[k / 2 % 2] * speed * step;
             surface.speed = speed;
@@ -119,7 +123,8 @@ mod tests {
         quiet.time
     }
 
-    /// What solutions shake by three times the speed of quiet bodies is quiet by its way, and not by its speed; what goes on is not.
+    /// A body that solutions shake at three times the speed of quiet bodies is quiet by its displacement, and
+    /// not by its speed; one that goes on in one direction is not.
     #[test]
     fn what_is_shaken_among_many_is_quiet_by_its_way() {
         assert!(quiet_after(Rest::ByWay, 3.0, BACK_AND_FORTH) > QUIET_TIME);
@@ -129,7 +134,7 @@ mod tests {
         }
     }
 
-    /// What turns in place is not quiet.
+    /// A body that turns in place is not quiet.
     #[test]
     fn turns_are_ways() {
         let options = SimulationOptions::default();

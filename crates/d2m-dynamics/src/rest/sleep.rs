@@ -1,5 +1,5 @@
-//! Rest: islands whose surfaces have been slow for long enough do not move until something comes close. Of a crowd parts of them rest: what
-//! touches only bodies that have been slow as well.
+//! Sleep: islands whose surfaces have been slow for long enough do not move until something comes close. In a
+//! crowd parts of islands sleep: bodies that touch only bodies that have been slow as well.
 
 use crate::Simulation;
 use crate::body::rigid_body::RigidBody;
@@ -10,18 +10,19 @@ use d2m_contact::{ContactPoint, Velocity};
 use d2m_mesh::DisjointSets;
 use glam::DVec3;
 
-/// Bodies of a simulation from which on parts of heaps sleep while others move: of fewer a step in which all are solved costs little.
+/// In a simulation of more bodies than this parts of heaps sleep while others move. With fewer bodies a step
+/// in which all are solved costs little.
 const MANY: usize = 256;
 
 impl Simulation {
-    /// Do bodies of a heap sleep while others of it move? Among many bodies something always does, and what it does to the others is solved
-    /// as if these were fixed, as long as it stays about what it was.
+    /// Do bodies of a heap sleep while others of it move? Among many bodies some always move, and their
+    /// effect on sleeping ones is solved as if these were fixed, as long as it stays about what it was.
     pub(crate) fn sleeps_in_parts(&self) -> bool {
         self.len() > MANY && !self.has_joints()
     }
 
-    /// After a step of length `step`: counts how long each body has been slow, and puts islands to sleep that touch
-    /// something, all of whose bodies have been slow long enough, and that touch nothing that moves.
+    /// After a step of length `step`: counts how long each body has been slow, and puts islands to sleep that
+    /// touch a body, all of whose bodies have been slow long enough, and that touch nothing that moves.
     pub(crate) fn put_to_sleep(&mut self, step: f64) {
         if !self.options.sleeping {
             return;
@@ -46,10 +47,11 @@ impl Simulation {
                 continue;
             }
             let rest = match (rubs[i], is_crowd) {
-                // What restores the gap lets it hop: what flies says so by its way.
+                // A body that restores its gap hops, and nothing presses on it meanwhile: its displacement
+                // decides.
                 (false, true) if !presses[i] => Rest::ByWay,
                 (false, _) => Rest::Unbraked,
-                // Nor does friction brake what motors and springs move, however slow they are.
+                // Friction does not brake what motors and springs move, however slow it is, either.
                 _ if is_driven[i] => Rest::Unbraked,
                 (true, false) => Rest::BySpeed,
                 (true, true) => Rest::ByWay,
@@ -70,13 +72,14 @@ impl Simulation {
             .iter()
             .map(|body| body.is_dynamic() && !body.asleep && !body.quiet.is_long())
             .collect();
-        // What hops on a heap bears on it all the same.
+        // A body that hops on a heap bears on it all the same.
         let touches = |contact: &ContactPoint| {
             contact.impulse > 0.0 || is_crowd && contact.distance <= NEAR * contact.gap
         };
         for (&(a, b), pair) in &self.pairs {
             let is_held = pair.contacts.iter().any(touches);
-            // Whatever is in contact with others is solved with them, and wakes them, in the next step.
+            // In a crowd all contacts count: their bodies are solved together, and wake each other, in the
+            // next step.
             let is_met = is_crowd && !pair.contacts.is_empty();
             if !is_held && !is_met {
                 continue;
@@ -95,7 +98,7 @@ impl Simulation {
             restless[a] |= moving(b);
             restless[b] |= moving(a);
         }
-        // What joints connect sleeps at once; what a motor holds still, however heavy it is, needs nothing below it.
+        // Bodies that joints connect fall asleep together. A motor that holds a body counts as its support.
         for joined in self.joints.iter().filter(|joined| !joined.is_gone()) {
             let [a, b] = joined.bodies;
             held_up[a] |= joined.holds();
@@ -123,7 +126,7 @@ impl Simulation {
 }
 
 impl Simulation {
-    /// What sleeps wakes where something that it touches has moved.
+    /// Sleeping bodies wake where a body that they touch has moved.
     fn wake_beside_moved(&mut self) {
         let has_moved = |i: usize| {
             let body = &self.bodies[i];
@@ -146,7 +149,7 @@ impl Simulation {
     }
 }
 
-/// What is restless, and what touches it.
+/// The restless bodies, and those that touch them.
 fn beside(restless: &[bool], together: &[(usize, usize)]) -> Vec<bool> {
     let mut awake = restless.to_vec();
     for &(a, b) in together {
@@ -156,7 +159,7 @@ fn beside(restless: &[bool], together: &[(usize, usize)]) -> Vec<bool> {
     awake
 }
 
-/// All that is connected with something restless.
+/// All bodies that are connected with a restless one.
 fn connected(restless: &[bool], together: &[(usize, usize)]) -> Vec<bool> {
     let mut joined = DisjointSets::new(restless.len());
     for &(a, b) in together {
@@ -170,11 +173,11 @@ fn connected(restless: &[bool], together: &[(usize, usize)]) -> Vec<bool> {
     roots.into_iter().map(|root| awake[root]).collect()
 }
 
-/// No momentum and no motion from now on.
+/// The body has no momentum and no motion from now on.
 fn sleep(body: &mut RigidBody, in_parts: bool) {
     body.asleep = true;
     body.quiet = if in_parts { body.quiet.drowsy() } else { Quiet::default() };
-    // The energy of the momenta is lost, and so is as much of what contacts have added.
+    // The energy of the momenta is lost, and with it as much of the energy that contacts have added.
     body.gained = (body.gained - body.kinetic_energy()).max(0.0);
     (body.momentum, body.angular_momentum) = Default::default();
     body.fly(Velocity::default(), f64::INFINITY);
@@ -189,7 +192,8 @@ mod tests {
     use d2m_bvh::MeshTree;
     use std::sync::Arc;
 
-    /// What sleeps wakes where a body that it touches has moved, and stays where it has been quiet.
+    /// A sleeping body wakes where a body that it touches has moved, and stays asleep where that has been
+    /// quiet.
     #[test]
     fn what_sleeps_wakes_beside_what_has_moved() {
         let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()));
@@ -210,8 +214,8 @@ mod tests {
         }
     }
 
-    /// Boxes on the ground that happen to hop, so that nothing presses on them as the step ends: of a crowd they fall asleep within the gap
-    /// of what bears them, and not above it.
+    /// Boxes on the ground that happen to hop, so that nothing presses on them as the step ends. In a crowd
+    /// they fall asleep within the gap of the ground, and not above it.
     #[test]
     fn what_hops_among_many_is_borne_by_what_is_near() {
         let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.2&y=0.2&z=0.2").unwrap()));
