@@ -1,8 +1,9 @@
-//! What energy jointed bodies gain from one flight to the next one.
+//! The energy that jointed bodies gain from one flight to the next one.
 //!
-//! Joints do no work. What bodies have in the middle of a flight, of motion and height together, they have in the middle of the next one but for terms
-//! of the second order in what they turn in a flight. Where a chain whips round these terms are large, and mostly above zero: then
-//! shorter flights are due.
+//! Joints do no work. The sum of kinetic and potential energy in the middle of a flight differs from that in
+//! the middle of the next one only by terms of the second order in the angles by which bodies turn in a
+//! flight. Where a chain whips round these terms are large, and mostly positive: then flights have to be
+//! shorter.
 
 use crate::SimulationOptions;
 use crate::body::rigid_body::RigidBody;
@@ -11,20 +12,22 @@ use d2m_contact::{ContactPoint, Law, System, Velocity};
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// The part of the energy of motion that a flight may gain, where that is at least what bodies have that fall for a step.
+/// The part of the kinetic energy that a flight may gain; bodies count with the energy of a fall of one step
+/// at least.
 const MOST_GAINED: f64 = 1.0 / 256.0;
 
 /// Energies of an island's bodies.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gained {
-    /// What motion and height together have gained.
+    /// The increase of kinetic and potential energy together.
     pub(crate) energy: f64,
-    /// What there is of motion, before or now or after a fall of one step.
+    /// The kinetic energy before, now or after a fall of one step, whichever is largest.
     motion: f64,
 }
 
 impl Gained {
-    /// From the middle of the present flights to that of flights of this length from `now` on, with the velocities of a system.
+    /// The increase from the middle of the present flights to that of flights of this length from `now` on,
+    /// with the velocities of a system.
     pub(crate) fn of(
         states: &[Cow<'_, RigidBody>],
         system: &System,
@@ -44,19 +47,19 @@ impl Gained {
         sum
     }
 
-    /// Is it more than joints could have added?
+    /// Is the increase larger than that of the terms of the second order may be?
     pub(crate) fn is_much(self) -> bool {
         self.energy > MOST_GAINED * self.motion
     }
 }
 
-/// A spin about the axes of the body is the same all through a flight.
+/// The kinetic energy. A spin in the axes of the body is the same all through a flight.
 fn energy_of_motion(state: &RigidBody, velocity: Velocity) -> f64 {
     let spin = state.orientation.conjugate() * velocity.angular;
     0.5 * (state.mass * velocity.linear.length_squared() + spin.dot(state.inertia * spin))
 }
 
-/// Do joints connect these bodies, and nothing else work on them: neither motors and springs, nor forces, nor what follows its motion?
+/// Do joints connect these bodies, and do no motors, springs, forces or kinematic bodies work on them?
 pub(crate) fn is_of_joints_alone(states: &[Cow<'_, RigidBody>], contacts: &[&ContactPoint]) -> bool {
     let works = |contact: &&ContactPoint| match contact.row.map(|row| (row.law, row.target)) {
         Some((Law::Range { lo, hi, softness }, rate)) => {
@@ -95,7 +98,7 @@ mod tests {
         Gained::of(&[Cow::Owned(state)], &system, &options, [0.0, 0.01])
     }
 
-    /// What begins to fall, or is thrown, has in the middle of its first flight hardly less of motion and height together.
+    /// A body that begins to fall, or is thrown, has hardly less energy in the middle of its first flight.
     #[test]
     fn what_falls_gains_nothing() {
         for speed in [0.0, 3.0, -3.0] {

@@ -1,4 +1,5 @@
-//! Joints: what is asked of them, their rows, and what goes wrong with bodies that they hold.
+//! Joints: their descriptions, their rows, and the treatment of bodies that oscillate or snap taut between
+//! them.
 pub(crate) mod description;
 pub(crate) mod energy_gain;
 pub(crate) mod position_error;

@@ -1,4 +1,4 @@
-//! Where flights of jointed bodies end, against where their joints ask for.
+//! How far the flights of jointed bodies end from where their joints ask for.
 
 use crate::body::rigid_body::RigidBody;
 use crate::flight::rows::Span;
@@ -6,14 +6,14 @@ use crate::joint::rows::Joined;
 use d2m_contact::{ContactPoint, System};
 use std::borrow::Cow;
 
-/// Where the flights of jointed bodies end.
+/// The ends of the flights of jointed bodies.
 pub(crate) struct Ends<'s> {
     pub(crate) joints: &'s [Joined],
     pub(crate) states: &'s [Cow<'s, RigidBody>],
     pub(crate) span: Span,
 }
 
-/// By how much the rate of a row is off what leads to the end that its joint asks for.
+/// By how much the rate of a row differs from the one that leads to where its joint asks for.
 pub(crate) struct Missed {
     pub(crate) row: usize,
     pub(crate) rate: f64,

@@ -1,16 +1,19 @@
-//! What the pull of joints does to bodies that oscillate faster than steps are long.
+//! Brakes on jointed bodies that the forces of their joints turn to and fro faster than steps are long.
 //!
-//! A body with the moment of inertia I that hangs between forces F, which pull outwards at arms r, oscillates across them at the rate ω with
-//! ω² = Σ F·r / I. Of light bodies between heavy ones that is much faster than steps are long, and impulses at the arms of a flight's start
-//! make more of each oscillation, from ω h = 2 on. There the change of their spin is braked by how much more the forces turn them back at its end:
+//! A body with the moment of inertia I that hangs between forces F, which pull outwards at arms r, oscillates
+//! across them at the rate ω with ω² = Σ F·r / I. Light bodies between heavy ones do so much faster than
+//! steps are long, and impulses at the arms of a flight's start amplify each oscillation from ω h = 2 on.
+//! There the change of their spin is braked by how much more the forces turn them back at the end of the
+//! flight:
 //!
 //! ```text
 //! I Δω = Σ r × F h − G Δω,     G = (2 − 1/s) h² K,     K = Σ (r·F)₊ (1 − F Fᵀ/F²),     s = h² tr(I⁻¹ K)
 //! ```
 //!
-//! where s is above one half, so that little changes for what is slower. It is Newmark's rule (J. Eng. Mech. Div. 85(3), 1959): with G it is
-//! h² K/(I + G) that would have to be above 4, which is some 1/2 at most. What keeps its spin is not braked, so that oscillations keep their energy;
-//! the error is one of the second order in h, as that of steps is in any case.
+//! where s is above one half, so that slower oscillations hardly change. It is Newmark's rule (J. Eng. Mech.
+//! Div. 85(3), 1959): with G, h² K/(I + G) would have to be above 4 for an instability, and it is some 1/2 at
+//! most. A constant spin is not braked, so oscillations keep their energy; the error is of the second order
+//! in h, as that of steps is anyway.
 
 use crate::body::rigid_body::RigidBody;
 use crate::body::turning::Pull;
@@ -19,12 +22,14 @@ use d2m_contact::{ContactPoint, System};
 use glam::{DMat3, DVec3};
 use std::borrow::Cow;
 
-/// The factor of the module's G: twice what forces turn back until the end of a flight, as they may be twice as large then.
+/// The factor 2 of the module's G: twice what forces turn back until the end of a flight, since they may be
+/// twice as large then.
 const BRAKING: f64 = 2.0;
-/// The s of the module from which on bodies are braked: half of the mean of two directions of which each could be at 1, and each is stable until 4.
+/// Bodies are braked from this s of the module on: half of the mean of two directions, each of which could be
+/// at 1 and is stable until 4.
 const FAST: f64 = 0.5;
 
-/// The ways' rows of each joint, which stand one after the other.
+/// The rows of each joint that hold points together, which stand one after the other.
 fn joints(contacts: &[ContactPoint]) -> impl Iterator<Item = Range<usize>> {
     let number = |contact: &ContactPoint| match contact.row {
         Some(row) if !row.is_angular => row.equation.map(|[number, _]| number),
@@ -39,7 +44,8 @@ fn joints(contacts: &[ContactPoint]) -> impl Iterator<Item = Range<usize>> {
     })
 }
 
-/// How much an impulse at an arm turns back what turns the arm, for a unit of angle: alike in all directions across the impulse.
+/// The angular impulse, for each radian by which an arm turns, with which an impulse at the arm turns it
+/// back: alike in all directions across the impulse.
 fn turned_back(arm: DVec3, impulse: DVec3) -> DMat3 {
     let square = impulse.length_squared();
     if square == 0.0 {
@@ -49,8 +55,8 @@ fn turned_back(arm: DVec3, impulse: DVec3) -> DMat3 {
     (DMat3::IDENTITY - along * (1.0 / square)) * arm.dot(impulse).max(0.0)
 }
 
-/// The pulls on the bodies in flights of a length with the impulses of these contacts, where they are stronger than those `before`.
-/// `free`: the spins without impulses, of those that may be braked.
+/// The pulls on the bodies in flights of a length, with the impulses of these contacts, where they are
+/// stronger than those `before`. `free`: the spins without impulses, of those bodies that may be braked.
 pub(crate) fn pulls(
     before: &[Option<Pull>],
     states: &[Cow<'_, RigidBody>],
@@ -79,7 +85,7 @@ pub(crate) fn pulls(
     sums.into_iter().enumerate().map(pull).collect()
 }
 
-/// The couples by which the bodies are braked, with the velocities of a system.
+/// The couples that brake the bodies, with the velocities of a system.
 pub(crate) fn couples(
     system: &System,
     members: &[usize],

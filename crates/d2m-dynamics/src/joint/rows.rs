@@ -1,4 +1,4 @@
-//! Joints of bodies in a simulation, and their rows.
+//! Joints of the bodies of a simulation, and their rows in the contact solver.
 
 use crate::SimulationError;
 use crate::body::rigid_body::RigidBody;
@@ -10,7 +10,7 @@ use d2m_contact::{ContactPoint, JointRow, Law, Material, tangents};
 use d2m_feature::FeaturePair;
 use glam::{BVec3, DQuat, DVec3};
 
-/// The part of what a joint is off that a step takes back.
+/// The part of a joint's position error that a step corrects.
 const TAKEN_BACK: f64 = 0.2;
 
 /// A joint between two bodies of the list, the second one perhaps the world.
@@ -24,26 +24,26 @@ pub(crate) struct Joined {
     axes: [DVec3; 2],
     /// The turn of the second body's axes against those of the first one.
     turn: DQuat,
-    /// The value at the last look, and when that was: angles go on beyond half a turn.
+    /// The last value, and when that was computed: angles go on beyond half a turn.
     value: f64,
     looked: f64,
-    /// Was it taken out, or one of its bodies?
+    /// Was the joint removed, or one of its bodies?
     is_gone: bool,
 }
 
-/// The flight that rows are for.
+/// The flight for which rows are made.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ahead {
     pub(crate) length: f64,
     pub(crate) step: f64,
     /// Do springs, soft motors and friction act? Not at an event: they have acted for the whole step.
     pub(crate) forces: bool,
-    /// How much of the step has passed, and what the joint's motor has pushed in it.
+    /// How much of the step has passed, and the impulse of the joint's motor in it.
     pub(crate) passed: f64,
     pub(crate) spent: f64,
 }
 
-/// The joint of these bodies is refused for a value.
+/// The error that refuses a joint of these bodies for a value.
 fn unusable([a, b]: [&RigidBody; 2], name: &'static str, value: String) -> SimulationError {
     let [a, b] = [a, b].map(|body| body.name.to_string());
     SimulationError::BadJoint { a, b, name, value, reason: UNUSABLE }
@@ -80,7 +80,7 @@ impl Joined {
         })
     }
 
-    /// The numbers of a joint of these bodies, given or read.
+    /// Checks the numbers of a joint of these bodies, given or read.
     fn check_numbers(joint: &Joint, [a, b]: [&RigidBody; 2]) -> Result<(), SimulationError> {
         let bad = |name: &'static str, value: String, reason: &'static str| {
             let [a, b] = [a, b].map(|body| body.name.to_string());
@@ -122,7 +122,7 @@ impl Joined {
         Ok(())
     }
 
-    /// Of a snapshot: is it a joint of these bodies? Both may be static by now.
+    /// Checks a joint of a snapshot: is it one of these bodies? Both may be static by now.
     pub(crate) fn check(&self, bodies: [&RigidBody; 2]) -> Result<(), SimulationError> {
         let [a, b] = bodies;
         Self::check_numbers(&self.joint, bodies)?;
@@ -145,7 +145,8 @@ impl Joined {
         !self.is_gone && self.bodies.contains(&body)
     }
 
-    /// The center of a body is another point of it now: `by` further, in its axes. Locks are those of the new center.
+    /// The center of a body has become another point of it, at `by` in its axes. Locks hold at the new
+    /// center.
     pub(crate) fn center_moved(&mut self, body: usize, by: DVec3) {
         if matches!(self.joint.kind, JointKind::Locked { .. }) {
             return;
@@ -183,7 +184,7 @@ impl Joined {
         !self.is_gone() && (self.joint.motor.is_some() || self.joint.spring.is_some())
     }
 
-    /// Does a motor without a bound on its force see to its value?
+    /// Does a motor of unbounded force hold its value?
     pub(crate) fn holds(&self) -> bool {
         let is_hard = |motor: &Motor| motor.most == f64::INFINITY && motor.hard_rate(0.0, 1.0).is_some();
         !self.is_gone() && self.joint.motor.as_ref().is_some_and(is_hard)
@@ -212,7 +213,8 @@ impl Joined {
         }
     }
 
-    /// How far the second body has turned against the first one about the axis in their present flights, since the last look.
+    /// How far the second body has turned against the first one about the axis in their present flights,
+    /// since the last value.
     fn turned(&self, [a, b]: [&RigidBody; 2]) -> f64 {
         let turned = |body: &RigidBody| {
             let since = body.flight.reference_time().max(self.looked);
@@ -221,7 +223,8 @@ impl Joined {
         (turned(b) - turned(a)).dot(a.orientation * self.axes[0])
     }
 
-    /// Remembers the value, where flights end: poses say it up to full turns, and flights how many of these there were.
+    /// Keeps the value where flights end: poses give it up to full turns, and flights give the number of
+    /// these.
     pub(crate) fn look(&mut self, bodies: &[RigidBody]) {
         if self.is_gone {
             return;
@@ -231,7 +234,7 @@ impl Joined {
         self.looked = pair[0].time.max(pair[1].time);
     }
 
-    /// How far the bodies are from what the joint keeps, along each of its equations, in these poses.
+    /// The position errors of the joint in these poses, along each of its equations.
     pub(crate) fn offs(&self, [(xa, qa), (xb, qb)]: [(DVec3, DQuat); 2]) -> Vec<f64> {
         let away = (xb + qb * self.arms[1]) - (xa + qa * self.arms[0]);
         let tilted = match self.joint.kind {
@@ -246,7 +249,7 @@ impl Joined {
         linear.iter().map(along(away)).chain(angular.iter().map(along(tilted))).collect()
     }
 
-    /// The directions of the equations: of ways, and of turns.
+    /// The directions of the equations: of displacements, and of turns.
     fn directions(&self, qa: DQuat) -> (Vec<DVec3>, Vec<DVec3>) {
         let all = vec![DVec3::X, DVec3::Y, DVec3::Z];
         let across: Vec<DVec3> = tangents(self.axes[0]).into_iter().map(|t| qa * t).collect();
@@ -262,28 +265,30 @@ impl Joined {
         }
     }
 
-    /// Turns about a single locked axis: a rate, and no place that it could drift from.
+    /// Is it a turn about a single locked axis? That has a rate, and no position from which it could drift.
     fn is_of_a_rate(&self, row: &JointRow) -> bool {
         let is_one = |turns: BVec3| turns.bitmask().is_power_of_two();
         matches!(self.joint.kind, JointKind::Locked { turns, .. } if row.is_angular && is_one(turns))
     }
 
-    /// What the equations may be off at the end of a flight from here.
+    /// The position errors that the equations may have at the end of a flight from here.
     pub(crate) fn aims(&self, poses: [(DVec3, DQuat); 2], length: f64, step: f64) -> Vec<f64> {
         let left = 1.0 - TAKEN_BACK * (length / step).min(1.0);
         self.offs(poses).into_iter().map(|off| left * off).collect()
     }
 
-    /// The rows of the next flight: impulses act where the bodies are. The rates of equations are corrected until the flight's end is where
-    /// it should be ([`Self::aims`]), which makes it the method SHAKE: symplectic, so that energy does not drift.
+    /// The rows of the next flight. Impulses act where the bodies are now. The rates of equations are
+    /// corrected until the flight ends where it should ([`Self::aims`]); that is the method SHAKE:
+    /// symplectic, so that energy does not drift.
     pub(crate) fn rows(&self, number: usize, pair: [&RigidBody; 2], ahead: Ahead) -> Vec<ContactPoint> {
         let arms = [0, 1].map(|k| pair[k].orientation * self.arms[k]);
         let points = [0, 1].map(|k| pair[k].position + arms[k]);
         let axis = pair[0].orientation * self.axes[0];
         let mut made = Made { joined: self, number, arms, point: points[1], rows: Vec::new() };
-        // Both arms reach to one point, so that impulses make no angular momentum: of a slide that of b.
+        // Both arms reach to one point, so that impulses add no angular momentum: to that of b, where the two
+        // slide apart.
         if matches!(self.joint.kind, JointKind::Locked { .. }) {
-            // The world has no angular momentum to keep: what locks push acts on the center.
+            // The world has no angular momentum to keep: locks act at the center.
             made.arms[1] = points[0] - pair[1].position;
         } else {
             made.arms[0] = arms[0] + (points[1] - points[0]);
@@ -321,7 +326,7 @@ impl Joined {
             is_motor: false,
         };
         let h = ahead.length;
-        // The rates that limits leave.
+        // The rates that limits allow.
         let (mut slowest, mut fastest) = (f64::NEG_INFINITY, f64::INFINITY);
         if let Some([lo, hi]) = self.joint.limits {
             let push = Law::Range { lo: 0.0, hi: f64::INFINITY, softness: 0.0 };
@@ -335,11 +340,12 @@ impl Joined {
         if let Some((motor, rate)) =
             motor.and_then(|motor| Some((motor, motor.hard_rate(value, ahead.step)?)))
         {
-            // In a step that is flown in parts it sees to its rate in each of them, with what it has not spent of its impulse so far.
+            // In a step that is flown in parts it brings about its rate in each, with the impulse that it has
+            // not used so far.
             let most = motor.most * (ahead.passed + h);
             let [lo, hi] = [(-most - ahead.spent).min(0.0), (most - ahead.spent).max(0.0)];
             let law = Law::Range { lo, hi, softness: 0.0 };
-            // No rates obey a limit and a motor, without a bound on its force, that leads beyond it.
+            // No rates obey both a limit and a motor of unbounded force that leads beyond it.
             let rate = rate.min(fastest).max(slowest);
             made.add(axis, JointRow { is_motor: true, ..row(law, rate, rate) });
         }
@@ -370,7 +376,7 @@ impl Joined {
 }
 
 impl Motor {
-    /// The rate that it sees to at once, where it is not soft.
+    /// The rate that it brings about at once, unless it is soft.
     fn hard_rate(&self, value: f64, step: f64) -> Option<f64> {
         match self.target {
             MotorTarget::Velocity(rate) => Some(rate),

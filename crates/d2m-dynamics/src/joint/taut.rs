@@ -1,10 +1,12 @@
 //! Chains that are pulled taut.
 //!
-//! Light bodies of a slack chain take up all of the energy of the heavy ones that pull it straight, in turns for which no flight is short enough. And
-//! joints that close a chain may leave it no way to move although their equations for velocities do: a straight bridge of planks that is pinned
-//! at both ends gives way across it only by lengths of the second order. No impulse has an arm there, so the corrections of a flight's end
-//! diverge in flights of any length. Bodies of such chains move as one until the end of the flight, which keeps momenta and takes the energy that
-//! they move against each other with, as an inelastic impact does.
+//! The light bodies of a slack chain take up all of the energy of heavy bodies that pull it straight: they
+//! turn so fast that no flight is short enough. And a closed chain may have no way to move although its
+//! equations for velocities allow one: a straight bridge of planks that is pinned at both ends gives way
+//! across it only by lengths of the second order. No impulse has an arm there, so the corrections of a
+//! flight's end diverge in flights of any length. The bodies of such chains move as one until the end of the
+//! flight. That is an inelastic impact: it keeps momenta and takes the energy of their motions against each
+//! other.
 
 use crate::flight::problem::Problem;
 use crate::flight::solved_body::moves;
@@ -13,7 +15,8 @@ use d2m_contact::ContactPoint;
 use d2m_mesh::DisjointSets;
 
 impl Problem<'_> {
-    /// Of the contacts, with the bodies: rows by which these joints hold their bodies as they are, and all joints as they are then.
+    /// The contacts and rows of the problem, where these joints hold their bodies as they are, and all joints
+    /// with those.
     pub(crate) fn locked(&self, numbers: &[usize], ahead: Ahead) -> (Vec<ContactPoint>, Vec<Joined>) {
         let mut held = self.joints.to_vec();
         let is_replaced = |c: &&&ContactPoint| c.joint().is_some_and(|joint| numbers.contains(&joint));
@@ -27,7 +30,8 @@ impl Problem<'_> {
         (rows, held)
     }
 
-    /// The numbers of the joints that hold the bodies to others, the world among them, in order. None: they close no chain.
+    /// The numbers of the joints that hold the bodies to others, the world among them, in order. None: no
+    /// chain is closed.
     pub(crate) fn of_closed_chains(&self) -> Option<Vec<usize>> {
         let (numbers, ground) = (self.numbers(), self.states.len());
         let mut joined = DisjointSets::new(ground + 1);
@@ -43,7 +47,8 @@ impl Problem<'_> {
         closes.then_some(numbers)
     }
 
-    /// Of the joints that hold two bodies which move, in order; about others the chain may turn. None: there is none, or a motor drives one.
+    /// The numbers, in order, of the joints between two moving bodies; about other joints the chain may turn.
+    /// None: there are none, or a motor drives one.
     pub(crate) fn between_moved(&self) -> Option<Vec<usize>> {
         let mut numbers = self.numbers();
         let is_moved = |body: usize| moves(&self.states[self.place(body)]);
