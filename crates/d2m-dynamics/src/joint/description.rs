@@ -1,4 +1,4 @@
-//! Joints between bodies, as they are described to a simulation.
+//! The descriptions of joints between bodies.
 
 use crate::BodyId;
 use glam::{BVec3, DVec3};
@@ -33,17 +33,18 @@ pub enum JointKind {
     Prismatic,
     /// To turn about the point.
     Spherical,
-    /// All but what is locked: ways of the center of mass along these axes of the world, and turns about them. Of one body, with the world:
-    /// [`Joint::locks`].
+    /// All but the locked directions: displacements of the center of mass along these axes of the world, and
+    /// turns about them. Of one body, with the world: [`Joint::locks`].
     Locked {
-        /// Ways that it may not go.
+        /// The axes along which it may not move.
         ways: BVec3,
-        /// Axes that it may not turn about. Of two or three the turn drifts by up to 3e-4 radians (measured); of one the angular velocity is zero.
+        /// The axes about which it may not turn. With two or three the turn drifts by up to 3e-4 radians
+        /// (measured); with one the angular velocity is zero.
         turns: BVec3,
     },
 }
 
-/// What a motor aims at.
+/// The target of a motor.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -92,26 +93,27 @@ pub enum MotorTarget {
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Motor {
-    /// What it aims at.
+    /// Its target.
     pub target: MotorTarget,
-    /// The greatest force or torque. Default: any, but for what is in the way: there it stalls.
+    /// The largest force or torque. Default: unbounded, except against an obstacle: there it stalls.
     #[cfg_attr(feature = "serde", serde(with = "unbounded"))]
     pub most: f64,
-    /// Force by what lacks to the position. Zero: as stiff as need be.
+    /// Force divided by the distance to the position. Zero: as stiff as necessary.
     pub stiffness: f64,
-    /// Force by rate, of a motor with a stiffness.
+    /// Force divided by the rate, of a motor with a stiffness.
     pub damping: f64,
 }
 
 impl Motor {
-    /// As strong and as stiff as need be.
+    /// A motor as strong and as stiff as necessary.
     #[must_use]
     pub const fn new(target: MotorTarget) -> Self {
         Self { target, most: f64::INFINITY, stiffness: 0.0, damping: 0.0 }
     }
 }
 
-/// A spring at a joint's value: stiffness (rest − value) − damping rate, solved for the end of a step: stable for any stiffness.
+/// A spring at a joint's value, of the force stiffness (rest − value) − damping rate. It is solved for the
+/// end of a step: stable for any stiffness.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -134,9 +136,9 @@ impl Motor {
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spring {
-    /// Force by length, or torque by angle.
+    /// Force divided by length, or torque divided by angle.
     pub stiffness: f64,
-    /// Force by rate.
+    /// Force divided by rate.
     pub damping: f64,
     /// The value at which it is slack.
     pub rest: f64,
@@ -152,9 +154,11 @@ impl Spring {
 
 /// A joint of two bodies, or of one and the world, to be added by [`Simulation::add_joint`](crate::Simulation::add_joint).
 ///
-/// Its value – the angle by which b has turned against a about the axis, or the length by which it has moved along it – is zero where it is
-/// added. Where b is the world, a body a that moves along the axis therefore has a negative value. Joints hold to rounding in velocities, in the middle of each flight; what the ends of flights are off is taken back by the next
-/// ones. What is certified is what flies, joints or not.
+/// Its value is the angle by which b has turned against a about the axis, or the length by which it has moved
+/// along it; it is zero where the joint is added. Where b is the world, a body a that moves along the axis
+/// therefore has a negative value. Joints hold to rounding in velocities, in the middle of each flight;
+/// position errors at the ends of flights are corrected by the next ones. Flights are certified whether there
+/// are joints or not.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -182,32 +186,32 @@ pub struct Joint {
     pub a: BodyId,
     /// The second body; none: the world.
     pub b: Option<BodyId>,
-    /// World frame, where the bodies are when it is added.
+    /// In the world frame, where the bodies are when it is added.
     pub point: DVec3,
-    /// World frame; of revolute and prismatic joints, of any length but zero.
+    /// In the world frame, for revolute and prismatic joints; of any length but zero.
     pub axis: DVec3,
-    /// The least and the greatest value.
+    /// The smallest and the largest value.
     pub limits: Option<[f64; 2]>,
-    /// What drives it.
+    /// A motor that drives its value.
     pub motor: Option<Motor>,
-    /// What pulls it back.
+    /// A spring that pulls its value back.
     pub spring: Option<Spring>,
-    /// Force or torque of dry friction at most.
+    /// The largest force or torque of dry friction.
     pub friction: f64,
     /// May the two bodies touch? Otherwise they pass through each other.
     pub collide: bool,
 }
 
 impl Joint {
-    /// A joint of two bodies at a point, along z, with nothing else.
+    /// A joint of two bodies at a point, along z, without limits, motor, spring and friction.
     pub const fn new(kind: JointKind, a: BodyId, b: Option<BodyId>, point: DVec3) -> Self {
         let axis = DVec3::Z;
         let (limits, motor, spring) = (None, None, None);
         Self { kind, a, b, point, axis, limits, motor, spring, friction: 0.0, collide: false }
     }
 
-    /// Locks of one body: ways of its center of mass along these axes of the world, and turns about them. What is locked stays as it is when
-    /// they are added.
+    /// Locks of one body: displacements of its center of mass along these axes of the world, and turns about
+    /// them, are not possible from when they are added.
     ///
     /// ```
     /// # use d2m_dynamics::{Body, Joint, Simulation, SimulationOptions};
@@ -261,14 +265,14 @@ impl Joint {
         self
     }
 
-    /// Whose bodies may touch each other, or not.
+    /// With bodies that may touch each other, or not.
     pub const fn with_collide(mut self, collide: bool) -> Self {
         self.collide = collide;
         self
     }
 }
 
-/// Numbers of which infinity is one, in formats that have none.
+/// Numbers that may be infinite, for formats without infinity.
 #[cfg(feature = "serde")]
 mod unbounded {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};

@@ -1,23 +1,25 @@
-//! Proofs that two bodies stay apart in their flights that cost less than a query.
+//! Proofs that two bodies stay apart in their flights, which cost less than a query.
 //!
-//! **From spheres** about their centers, which move with constant velocities: whatever the bodies turn.
+//! **From spheres** about their centers, which move with constant velocities, however the bodies turn.
 //!
 //! **From a distance.** Let the bodies be at least d apart in poses (x, q). In other poses (x', q') a point is displaced by no more
 //! than |x' − x| + ρ 2 |q' − q|, with the radius ρ about the center x and of the quaternions ±q the nearer to q': the chord to an
 //! angle θ between rotations is 2 sin(θ/2) ≤ 4 sin(θ/4) = 2 |q' − q|. Of the displacements of the centers only the difference counts. From
 //! there on, flights of length τ with the velocities v and ω bring points closer by |v_b − v_a| τ + (ρ_a |ω_a| + ρ_b |ω_b|) τ at most.
 //!
-//! **From a direction.** Seen from axes that turn with w about the center of a, the point r of a body with the angular velocity ω, whose
-//! center is D away and moves with V, has along a direction n of these axes the place
+//! **From a direction.** Take axes that turn with w about the center of a. A body with the angular velocity
+//! ω, whose center is D away and moves with V, has a point r whose coordinate along a direction n of these
+//! axes is
 //!
 //! ```text
 //! n·(D + r) + n·(V − w × D + Ω × r) t + remainder,    Ω = ω − w
 //! |remainder| ≤ ½ t² ((|Ω| + |w|) |Ω| ρ + |w|² (|D| + |V| t) + 2 |w| |V|)
 //! ```
 //!
-//! for its acceleration there is Ω × (Ω × r) + (Ω × w) × r + w × (w × D(t)) − 2 w × V. The least of the linear parts over the vertices
-//! of b less the greatest over those of a is a concave function of t, so it is least at an end of the flight. Bodies are in the convex hulls
-//! of their vertices, or within their radius of these.
+//! because the point's acceleration there is Ω × (Ω × r) + (Ω × w) × r + w × (w × D(t)) − 2 w × V. The
+//! minimum of the linear parts over the vertices of b less the maximum over those of a is a concave function
+//! of t, so its minimum is at an end of the flight. Bodies are in the convex hulls of their vertices, or
+//! within their radius of these.
 
 use crate::body::rigid_body::RigidBody;
 use crate::pairs::part_of_flight::proven_until;
@@ -26,26 +28,29 @@ use d2m_feature::MovingSphere;
 use d2m_motion::Pose;
 use glam::{DMat3, DQuat, DVec3};
 
-/// Roundings of a bound, relative to the sizes of what it is computed from: a flight's place (a product and a sum) and turn, a placed vertex
-/// (norm of the quaternion, nine products of three, two sums), its velocity, lengths, products and sums, fewer than 128 operations of
-/// relative error 2⁻⁵³ each, doubled.
+/// The rounding of a bound, relative to the sizes of the numbers from which it is computed: position (a
+/// product and a sum) and turn of a flight, a placed vertex (norm of the quaternion, nine products of three,
+/// two sums), its velocity, lengths, products and sums, fewer than 128 operations of relative error 2⁻⁵³
+/// each, doubled.
 pub(crate) const ROUNDING: f64 = 128.0 * f64::EPSILON;
 
-/// What flights lose where they join, of the same sizes, 2⁻⁴⁸: of relative size 2⁻⁵³ each, the rounding of the time since its flight began, of its way and
-/// its place, and fewer than 24 of its turn. What stays further apart in its flights does so where the next begin, too.
+/// The error where one flight joins the next, relative to the same sizes, 2⁻⁴⁸: of relative size 2⁻⁵³ each,
+/// the rounding of the time since the flight began, of its displacement and its position, and fewer than 24
+/// of its turn. Bodies that stay further apart in their flights are so where the next ones begin, too.
 pub(crate) const JOIN: f64 = 16.0 * f64::EPSILON;
 
-/// Vertices of both bodies together up to which all of them are placed: that many cost a tenth of a query.
+/// The most vertices of both bodies together that are placed: so many cost a tenth of a query.
 const FEW: usize = 64;
 
 impl RigidBody {
-    /// Holds the body in its flight, for times since that from which the flight is counted.
+    /// Encloses the body in its flight, for times since the reference time of the flight.
     pub(crate) fn sphere(&self) -> MovingSphere {
         let (center, velocity) = (self.flight.position(), self.flight.linear_velocity());
         MovingSphere { center, velocity, radius: self.radius }
     }
 
-    /// How far it reaches from the origin at most, from `now` on for a time `tau`, by whatever way.
+    /// A bound on the distance of its points from the origin, from `now` on for a time `tau`, in any flight
+    /// of its speed.
     pub(crate) fn extent(&self, now: f64, tau: f64) -> f64 {
         let way = (now - self.flight.reference_time()).abs() + tau;
         self.flight.position().length() + self.surface_speed() * way + self.radius
@@ -64,7 +69,7 @@ pub(crate) fn are_spheres_apart(a: &RigidBody, b: &RigidBody, time: f64, end: f6
     a.sphere_at(time).stays_apart(&b.sphere_at(time), least, end - time)
 }
 
-/// Two bodies where their flights have them at a time.
+/// Two bodies at their poses of a time of their flights.
 #[derive(Clone, Copy)]
 pub(crate) struct Placed<'s> {
     pub(crate) bodies: [&'s RigidBody; 2],
@@ -86,7 +91,8 @@ pub(crate) struct Clearance {
 }
 
 impl Clearance {
-    /// A lower bound of the distance of the bodies in their flights from where they are on, for a time `tau`.
+    /// A lower bound of the distance of the bodies in their flights from their present poses on, for a time
+    /// `tau`.
     pub(crate) fn bound(&self, placed: &Placed<'_>, tau: f64) -> f64 {
         let Placed { bodies, poses, now } = *placed;
         let (mut offset, mut turned) = (DVec3::ZERO, 0.0);
@@ -101,31 +107,33 @@ impl Clearance {
     }
 }
 
-/// The lesser of |q − r| and |q + r|.
+/// The smaller one of |q − r| and |q + r|.
 fn between(q: DQuat, r: DQuat) -> f64 {
     (q - r).length().min((q + r).length())
 }
 
-/// How fast points of two bodies come closer at most.
+/// A bound on the speed at which points of two bodies approach each other.
 pub(crate) fn approach([a, b]: [&RigidBody; 2]) -> f64 {
     let spin = |body: &RigidBody| body.flight.angular_velocity().length() * body.radius;
     (b.flight.linear_velocity() - a.flight.linear_velocity()).length() + spin(a) + spin(b)
 }
 
-/// The lengths that enter a bound.
+/// The sum of the lengths that enter a bound.
 pub(crate) fn sizes(bodies: [&RigidBody; 2], now: f64, tau: f64) -> f64 {
     bodies.into_iter().map(|body| body.extent(now, tau)).sum()
 }
 
-/// May all of their vertices be placed?
+/// Are their vertices few enough to be placed?
 pub(crate) fn have_few_vertices(bodies: [&RigidBody; 2]) -> bool {
     bodies.iter().map(|body| body.tree.mesh().vertex_count()).sum::<usize>() <= FEW
 }
 
-/// Until when two bodies are further apart than `needed` in a window of their flights, as follows from a direction from a to b that is about the unit
-/// vector `normal` at first, and turns with one of them or halfway between: no earlier than the window begins.
+/// Until when two bodies are proven further apart than `needed` in a window of their flights, along a
+/// direction from a to b. It is about the unit vector `normal` at first, and turns with one of them or
+/// halfway between. The time is no earlier than the start of the window.
 ///
-/// What bends off a direction grows with the square of the time, so where the window is too long parts of it are tried.
+/// What the bound loses by turning grows with the square of the time, so where the window is too long parts
+/// of it are tried.
 pub(crate) fn apart_along_until(normal: DVec3, bodies: [&RigidBody; 2], window: Window, needed: f64) -> f64 {
     let [a, b] = bodies.map(|body| body.flight.angular_velocity());
     let begun = Placed::at(bodies, window.start());
@@ -143,8 +151,9 @@ pub(crate) fn apart_along_until(normal: DVec3, bodies: [&RigidBody; 2], window: 
     until
 }
 
-/// A lower bound of how far two bodies are apart along a direction in their flights from where they are on, for a time `tau`: the direction from
-/// a to b that is the unit vector `normal` at first and then turns with `spin`. None: they have too many vertices to place.
+/// A lower bound of the distance of two bodies along a direction in their flights from their present poses
+/// on, for a time `tau`. The direction from a to b is the unit vector `normal` at first and then turns with
+/// `spin`. None: they have too many vertices to place.
 pub(crate) fn bound_along(normal: DVec3, spin: DVec3, placed: &Placed<'_>, tau: f64) -> Option<f64> {
     let Placed { bodies, poses, now } = *placed;
     if !have_few_vertices(bodies) {
@@ -211,7 +220,7 @@ mod tests {
         distance(a, b, Solid::Filled).unwrap().upper
     }
 
-    /// No bound is more than the distance of any time of the flights.
+    /// No bound is larger than the distance at any time of the flights.
     #[test]
     fn bounds_are_no_more_than_the_distance() {
         let state = &mut KnuthRandom(1);
@@ -254,7 +263,7 @@ mod tests {
         place(1).fold(f64::INFINITY, f64::min) - place(0).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Also along directions that no distance is along, and that turn otherwise than the bodies.
+    /// Also along directions that are not those of the distance, and that turn differently from the bodies.
     #[test]
     fn bounds_along_directions_are_no_more_than_the_gap() {
         let state = &mut KnuthRandom(2);
@@ -272,7 +281,8 @@ mod tests {
         }
     }
 
-    /// Where a direction shows nothing of a whole flight it does so of parts: until then the bodies are further apart than that.
+    /// Where a direction proves nothing for a whole flight it does for parts: until then the bodies are
+    /// further apart.
     #[test]
     fn directions_show_more_of_parts_of_flights() {
         let state = &mut KnuthRandom(3);

@@ -1,4 +1,4 @@
-//! The contacts of two bodies at one instant: the closest features that count.
+//! The contacts of two bodies at one instant: those of their closest features that count.
 
 use crate::body::rigid_body::RigidBody;
 use d2m_bvh::{Proximity, ProximityOptions, QueryError, TriMesh, proximities_with, reduce_proximities};
@@ -9,38 +9,41 @@ use glam::DVec3;
 
 /// Features within this many gaps are measured in any case.
 pub(crate) const AROUND: f64 = 1.5;
-/// Sine of the angle by which features may be tilted and still be one contact: the far vertices of a box that lies almost flat.
+/// The sine of the angle by which features may be tilted and still be one contact, as at the far vertices of
+/// a box that lies almost flat.
 const TILT: f64 = 0.1;
 
-/// The normal of a contact is that of a face beside it, if the closest point lies no further from the face than this part of the
-/// gap (of the distance, if that is more) sideways. Where a vertex lies over an edge, the direction between them turns by that
-/// offset over the distance, however small both are: without friction equal boxes on each other would slide apart. A fiftieth was
-/// chosen by experiment: with zero the boxes of `cubes_without_friction_fall_flat_and_stack` slide apart by 6 gaps.
+/// A contact takes the normal of a face beside it, if the closest point lies sideways of the face by no more
+/// than this part of the gap (of the distance, if that is more). Where a vertex lies over an edge, the
+/// direction between them turns by that offset over the distance, however small both are: without friction
+/// equal boxes on each other would slide apart. A fiftieth was chosen by experiment: with zero the boxes of
+/// `cubes_without_friction_fall_flat_and_stack` slide apart by 6 gaps.
 const FLAT: f64 = 0.02;
 
-/// The part of the gap below which contacts keep their true normals besides those of faces. Flights end between half of the gap
-/// and 1.21 times that, so a pair that is closer than 0.3 has been stopped twice: the contacts with the normals of faces, that it has had
-/// till then, do not keep it apart.
+/// Below this part of the gap contacts keep their true normals besides those of faces. Flights end between
+/// half of the gap and 1.21 times that, so a pair that is closer than 0.3 has been stopped twice: the
+/// contacts with the normals of faces, which it has had until then, do not keep it apart.
 const TIGHT: f64 = 0.3;
 
-/// Contacts along the normal of a face from which on they are those of a face.
+/// The number of contacts along the normal of a face from which on they are those of a face.
 const FACE: usize = 3;
 
-/// The part of the load of a pair from which on it counts that a contact bears it.
+/// The part of a pair's load from which on a contact counts as bearing it.
 const BEARING: f64 = 1.0 / 16.0;
 
-/// The contacts of a pair, and the number of features that they were chosen from.
+/// The contacts of a pair, and the number of features from which they were chosen.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Measured {
     pub(crate) contacts: Vec<ContactPoint>,
     pub(crate) features: usize,
     /// The distance of the bodies to rounding; the margin, if they are further apart.
     pub(crate) apart: f64,
-    /// Along the closest features.
+    /// The direction between the closest features.
     pub(crate) normal: Option<DVec3>,
 }
 
-/// The closest features of two bodies within `margin` at a time of their flights; `pair` numbers the bodies, `before` are the contacts that they had.
+/// Measures the closest features of two bodies within `margin` at a time of their flights. `pair`: the
+/// numbers of the bodies; `before`: their last contacts.
 pub(crate) fn measure(
     bodies: &[RigidBody],
     pair: (usize, usize),
@@ -59,9 +62,10 @@ pub(crate) fn measure(
     if is_round {
         wide = wide.iter().map(|near| near.with_radii(radii)).collect();
     }
-    // In the order of their distances.
+    // They are in the order of their distances.
     let (apart, normal) = (wide.first().map_or(margin, |p| p.distance), wide.first().map(|p| p.normal));
-    // The points of meshes with radii are far apart, so the directions between them are as exact as those of faces.
+    // The points of meshes with radii are far apart, so the directions between them are as exact as those of
+    // faces.
     let flatten = |p: &Proximity| {
         if is_round { None } else { flattened(p, [a, b], [&posed_a.pose, &posed_b.pose], gap) }
     };
@@ -69,14 +73,14 @@ pub(crate) fn measure(
     let mut normals: Vec<DVec3> = exact.map(|p| flatten(p).unwrap_or(*p).normal).collect();
     normals.sort_by(|a, b| order(*a, *b));
     normals.dedup();
-    // In the order of their first coordinates: the others are further off than that.
+    // They are in the order of their first coordinates: normals outside this range are further off.
     let beside = |x: f64| {
         let [from, to] = [x - TILT, x + TILT].map(|end| normals.partition_point(|normal| normal.x < end));
         &normals[from..to]
     };
     let straight = |p: &Proximity| {
-        // Two edges whose common normal is outside of their cones would push askew: where faces are almost parallel they
-        // get the normal of a locally closest pair. Without one they are no contact.
+        // Two edges whose common normal is outside of their cones would push askew: where faces are almost
+        // parallel they take the normal of a locally closest pair. Without one they are no contact.
         if is_edges(p) && p.tilt > 0.0 {
             along(p, beside(p.normal.x), TILT)
         } else {
@@ -88,7 +92,8 @@ pub(crate) fn measure(
     let reduced =
         [beside_askew(&chosen, (gap, material.friction), || wide.iter().filter_map(flatten)), chosen]
             .concat();
-    // What bears a part of the load that counts stays a contact as long as it is near: without it the body would tip over it.
+    // A contact that bears a part of the load stays one as long as it is near: without it the body would tip
+    // over it.
     let load: f64 = before.iter().map(|contact| contact.impulse).sum();
     let bears = |p: &&Proximity| {
         before.iter().any(|contact| contact.feature == p.feature && contact.impulse > BEARING * load)
@@ -103,7 +108,7 @@ pub(crate) fn measure(
         let running = touching.tangents.map(|tangent| tangent.dot(runs));
         ContactPoint { feature: p.feature, distance: p.distance, gap, point: middle(p), running, ..touching }
     };
-    // Where hardly any of the gap is left, what slides across must not close along the true direction either.
+    // Where hardly any of the gap is left, sliding bodies must not approach along the true direction either.
     let is_tight = |p: &&Proximity| p.tilt == 0.0 && p.distance < TIGHT * gap && !found.contains(*p);
     let mut all = found.clone();
     all.extend(wide.iter().filter(is_tight));
@@ -111,9 +116,10 @@ pub(crate) fn measure(
     Ok(Measured { contacts, features: wide.len(), apart, normal })
 }
 
-/// Beside the rim of a face that lies on another one normals are askew, and where friction does not hold them such contacts give way aside: what stands
-/// on one tips, as a heavy body on a light one. Where one was chosen for a corner of the faces, these are the corners along the faces' own normals.
-/// What friction of such a slant holds, or what is touched from several sides, as a pin in its hole, needs none.
+/// Beside the rim of a face that lies on another one normals are askew. Where friction does not hold them,
+/// such contacts give way sideways: a body that stands on one tips, as a heavy body on a light one. Where one
+/// was chosen for a corner of the faces, this gives the corners along the faces' own normals. A slant that
+/// friction holds needs none, nor does a body that is touched from several sides, as a pin in its hole.
 fn beside_askew<F: Iterator<Item = Proximity>>(
     chosen: &[Proximity],
     (gap, friction): (f64, f64),
@@ -140,7 +146,7 @@ fn beside_askew<F: Iterator<Item = Proximity>>(
     added
 }
 
-/// Some total order.
+/// Any total order.
 fn order(a: DVec3, b: DVec3) -> core::cmp::Ordering {
     a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
 }
@@ -160,7 +166,7 @@ fn flattened(p: &Proximity, bodies: [&RigidBody; 2], poses: [&Pose; 2], gap: f64
     along(p, &normals, flat_within(p, gap))
 }
 
-/// How far the direction of a proximity may be off the normal of a face to be taken for it.
+/// How far the direction of a proximity may be off the normal of a face to be replaced by it.
 fn flat_within(p: &Proximity, gap: f64) -> f64 {
     (FLAT * gap / p.distance).clamp(FLAT, TILT)
 }
@@ -195,7 +201,8 @@ mod tests {
     use std::f64::consts::FRAC_PI_4;
     use std::sync::Arc;
 
-    /// Where corners lie beyond the rim of the face below by a thirtieth of the gap, faces have contacts of their own there, too, without friction.
+    /// Where corners lie beyond the rim of the face below by a thirtieth of the gap, there are contacts along
+    /// the face's normal, too, without friction.
     #[test]
     fn corners_beside_a_rim_push_along_the_face() {
         let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()));
@@ -220,7 +227,8 @@ mod tests {
         assert!(counts.iter().any(|[_, held]| *held < 4), "{counts:?}");
     }
 
-    /// Two plates that lie on each other turned by 40 degrees: eight corners, of which four are contacts, now these and now those by rounding.
+    /// Two plates that lie on each other turned by 40 degrees: eight corners, of which rounding decides which
+    /// four are contacts.
     #[test]
     fn what_bears_the_load_stays_a_contact() {
         let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=1&y=0.1&z=1").unwrap()));

@@ -1,29 +1,32 @@
-//! Proofs that a body stays apart from one that it lies within, as a pin in its hole, however fast they turn: a turn takes the surface of a bore
-//! along itself, so that a query, which sees all of it move, divides the flight into very many parts.
+//! Proofs that a body stays apart from one inside of which it lies, as a pin in its hole, however fast they
+//! turn. A turn moves the surface of a bore along itself, but a query sees all of it move, and divides the
+//! flight into very many parts.
 //!
-//! **From a center.** In its flight a body turns about its center, from which all of its points keep their distances. Of a shell no point
-//! is nearer to its center than c (its cavity), and of what lies within no point is further from its own than ρ. The centers are apart by a
-//! convex function of time, so by no more than at the begin or the end of the flight:
+//! **From a center.** In its flight a body turns about its center, and all of its points keep their distances
+//! from that. No point of a shell is nearer to its center than c (its cavity), and no point of the inner body
+//! is further from its own center than ρ. The distance |D| of the centers is a convex function of time, so it
+//! is largest at the start or the end:
 //!
 //! ```text
 //! distance ≥ c − ρ − max |D|
 //! ```
 //!
-//! **From an axis.** Let an axis n through the center of the outer body be fixed in it, near to that of its spin ω: no point of the
-//! body is nearer to it than c, and along it the body lies between z₀ and z₁. In a flight of length τ the axis turns by no more than α =
-//! |ω × n| τ/2 from where it is in the middle. Of a body that does not turn, the distance p from the outer one's center, and that from its
-//! axis in the middle of the flight, are convex functions of time and place, so greatest at the begin or the end of the flight and at an end
-//! of the part of an edge that comes nearer than m to the places between z₀ and z₁. With the greatest value r of their sum
-//!
-//! ```text
+//! **From an axis.** Let an axis n through the center of the outer body be fixed in it, near to that of its
+//! spin ω: no point of the body is nearer to it than c, and along it the body lies between z₀ and z₁. In a
+//! flight of length τ the axis turns by no more than α = |ω × n| τ/2 from its direction in the middle. For an
+//! inner body that does not turn, the distance |p| of a point from the outer center, and its distance from
+//! the axis in the middle of the flight, are convex functions of time and place. So they are largest at the
+//! start or the end of the flight, and at an end of the part of an edge that comes nearer than m to the
+//! places between z₀ and z₁. With the largest value r of their sum
 //! distance ≥ min(m, c − r),      r = max (|p × n| + α |p|)
 //! ```
 //!
-//! In a part of the flight the axis turns by that part of α, so where the whole flight shows nothing halves, quarters and eighths are tried,
-//! from its begin on, and a query has what is left.
+//! In a part of the flight the axis turns by that part of α. So where nothing follows for the whole flight,
+//! halves, quarters and eighths are tried, from its start on; a query takes the rest.
 //!
-//! A body that turns, too, lies within some distance of a part of its own axis, and a line with that radius, and with what that axis
-//! turns, stands for it. Where the outer body does not turn, the distance from it of that part at the start, less what both move, is a bound.
+//! An inner body that turns, too, lies within some distance of a segment of its own axis. A line with that
+//! radius, and with what that axis turns, takes its place. Where the outer body does not turn, a bound is the
+//! distance of that segment from it at the start, less the displacements of both.
 
 use crate::body::rigid_body::{AXES_REACH, RigidBody};
 use crate::pairs::clearance::{Placed, ROUNDING, sizes};
@@ -32,12 +35,15 @@ use d2m_bvh::Window;
 use d2m_motion::Pose;
 use glam::DVec3;
 
-/// A body whose turn moves none of its points by more than this part of what is to be shown does not turn, but for that.
+/// A turn that moves no point of a body by more than this part of the distance that is to be proven counts as
+/// a loss only.
 const STILL: f64 = 1.0 / 16.0;
-/// Cosine of the angle between the spin and an axis of the mesh up to which that axis is taken: a fifth of a radian.
+/// The spin axis is replaced by an axis of the mesh if the cosine of the angle between them is above this: a
+/// fifth of a radian.
 const NEAR_AXIS: f64 = 0.98;
 
-/// A lower bound of the distance of two bodies in their flights from where they are on, for a time `tau`, from their centers.
+/// A lower bound of the distance of two bodies in their flights from their present poses on, for a time
+/// `tau`, from their centers.
 pub(crate) fn bound_from_centers(placed: &Placed<'_>, tau: f64) -> f64 {
     let Placed { bodies: [a, b], poses, now } = *placed;
     let room = |outer: &RigidBody, inner: &RigidBody| outer.cavity - outer.rounding - inner.radius;
@@ -51,49 +57,50 @@ pub(crate) fn bound_from_centers(placed: &Placed<'_>, tau: f64) -> f64 {
     most - apart - ROUNDING * sizes([a, b], now, tau)
 }
 
-/// Are two bodies further apart than `needed` in their flights from `now` on, for a time `tau`, as follows from the axis that one turns about?
+/// Are two bodies proven further apart than `needed` in their flights from `now` on, for a time `tau`, from
+/// the axis about which one of them turns?
 pub(crate) fn is_apart_along_axis([a, b]: [&RigidBody; 2], now: f64, tau: f64, needed: f64) -> bool {
-    // The ends of axes are numbers of the meshes' frames, which may lie far from their centers.
+    // The ends of axes are in the meshes' frames, whose origins may be far from their centers.
     let lost = ROUNDING * (sizes([a, b], now, tau) + a.center.length() + b.center.length());
     [[a, b], [b, a]]
         .into_iter()
         .any(|pair| Nested::new(pair, now, tau, needed).is_some_and(|nested| nested.bound() > needed + lost))
 }
 
-/// Until when that is known of two bodies in a window of their flights: no earlier than it begins. What the axis of a body turns in a part of it is so
-/// much less.
+/// Until when that is proven in a window of their flights, no earlier than its start. In a part of the window
+/// the axis of a body turns by so much less.
 pub(crate) fn apart_along_axis_until(bodies: [&RigidBody; 2], window: Window, needed: f64) -> f64 {
     proven_until(window, |from, to| is_apart_along_axis(bodies, from, to - from, needed))
 }
 
-/// A body in another one, for a flight.
+/// A body inside another one, for a flight.
 struct Nested<'s> {
     inner: &'s RigidBody,
     outer: &'s RigidBody,
-    /// At the start.
+    /// At the start of the flight.
     poses: [Pose; 2],
-    /// None: what turns move counts as lost.
+    /// None: the body hardly turns; its displacement by that is part of `lost`.
     turning: [Option<Turning>; 2],
     lost: f64,
-    /// What the inner body moves against the outer one.
+    /// The displacement of the inner body relative to the outer one.
     way: DVec3,
     needed: f64,
 }
 
-/// A body that turns, about almost this axis through its center.
+/// A body that turns about almost this axis through its center.
 #[derive(Clone, Copy, PartialEq)]
 struct Turning {
-    /// In the axes of the mesh, which keep it; which of these it is, if it is one.
+    /// The axis in the mesh frame, in which it is fixed; and its number, if it is an axis of that frame.
     own: DVec3,
     of_mesh: Option<usize>,
-    /// In the middle of the flight.
+    /// Its direction in the middle of the flight.
     axis: DVec3,
-    /// How far from that direction, as an angle, it is at other times.
+    /// The largest angle between that and its direction at other times.
     off: f64,
 }
 
 impl Turning {
-    /// An axis of the mesh that is near to that of the spin, or that of the spin.
+    /// With an axis of the mesh frame that is near to that of the spin, or with that of the spin.
     fn new(body: &RigidBody, now: f64, tau: f64) -> Option<Self> {
         let spin = body.flight.angular_velocity();
         let rotation = body.pose_at(now + 0.5 * tau).rotation;
@@ -105,24 +112,25 @@ impl Turning {
     }
 }
 
-/// A line from one point to another, from the center of the outer body.
+/// A segment from one point to another, relative to the center of the outer body.
 type Edge = [DVec3; 2];
 
-/// Edges about which the inner body is, by no more than a radius; along an axis by no more than `reach` of it.
+/// Segments within whose radius the inner body lies; along an axis it reaches no further than `reach` beyond
+/// them.
 struct Inner {
     edges: Vec<Edge>,
     radius: f64,
     reach: f64,
 }
 
-/// The part of a body's axis along which it lies, from its center, and how far about it.
+/// The segment of a body's axis along which it lies, from its center, and its distance from that.
 struct Shaft {
     ends: [f64; 2],
     radius: f64,
 }
 
 impl<'s> Nested<'s> {
-    /// None: the bodies are not placed so that anything could be shown.
+    /// None: the bodies do not lie so that anything could be proven.
     fn new([inner, outer]: [&'s RigidBody; 2], now: f64, tau: f64, needed: f64) -> Option<Self> {
         let bodies = [inner, outer];
         let mut lost = 0.0;
@@ -148,7 +156,7 @@ impl<'s> Nested<'s> {
         })
     }
 
-    /// A lower bound of the distance, but for roundings.
+    /// A lower bound of the distance, without the rounding.
     fn bound(&self) -> f64 {
         let [turns, Some(about)] = self.turning else { return self.bound_at_rest() };
         let along = || {
@@ -163,7 +171,7 @@ impl<'s> Nested<'s> {
         (free - self.farthest(&inner, about) - inner.radius).min(2.0 * self.needed) - self.lost
     }
 
-    /// The outer body does not turn: how far it is from the part of the inner one's axis.
+    /// The bound where the outer body does not turn: its distance from the segment of the inner one's axis.
     fn bound_at_rest(&self) -> f64 {
         let [Some(turns), _] = self.turning else { return 0.0 };
         let shaft = self.shaft(turns);
@@ -187,7 +195,7 @@ impl<'s> Nested<'s> {
         Shaft { ends, radius: radius + self.inner.rounding }
     }
 
-    /// What stands for the inner body: its edges, or where it turns its axis.
+    /// Represents the inner body by its edges, or by its axis where it turns.
     fn inner_about(&self, turns: Option<Turning>, about: Turning) -> Inner {
         let (pose, center) = (self.poses[0], self.poses[1].translation);
         let offset = pose.translation - center;
@@ -207,8 +215,8 @@ impl<'s> Nested<'s> {
         Inner { edges: edges.collect(), radius: self.inner.rounding, reach: self.inner.rounding }
     }
 
-    /// How far from the axis the parts of the edges are at most that come as near as twice what is needed to the places of the outer body
-    /// along it, at any time of the flight.
+    /// The largest distance from the axis, at any time of the flight, of those parts of the edges that come
+    /// within twice the needed distance of the outer body's places along the axis.
     fn farthest(&self, inner: &Inner, about: Turning) -> f64 {
         let Turning { own, axis, off, .. } = about;
         let places = self.outer.tree.mesh().vertices().iter().map(|&v| (v - self.outer.center).dot(own));
@@ -216,13 +224,13 @@ impl<'s> Nested<'s> {
             places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(z), high.max(z)));
         let offset = (self.poses[0].translation - self.poses[1].translation).length();
         let size = self.inner.radius + offset + self.way.length();
-        // Roundings of a place along the axis.
+        // The rounding of a place along the axis.
         let placed = self.poses.iter().map(|pose| pose.translation.length()).sum::<f64>();
         let unsure = ROUNDING * (size + self.outer.radius + placed);
         let wide = 2.0 * self.needed + inner.reach + self.outer.rounding + self.lost + off * size;
         let along = self.way.dot(axis);
         let slab = [low - wide - along.max(0.0) - unsure, high + wide - along.min(0.0) + unsure];
-        // What the axis moves is no more than the distance from the center times the angle.
+        // The axis moves by no more than the distance from the center times the angle.
         let from_axis = |p: DVec3| (p - axis * p.dot(axis)).length() + off * p.length();
         let mut farthest = 0.0f64;
         for edge in &inner.edges {
@@ -237,13 +245,15 @@ impl<'s> Nested<'s> {
 }
 
 impl Shaft {
-    /// How far its ends are from where they would be if its axis kept the direction of the middle of the flight.
+    /// How far its ends are at most from where they would be if its axis kept the direction of the middle of
+    /// the flight.
     fn off(&self, turns: Turning) -> f64 {
         turns.off * self.ends[0].abs().max(self.ends[1].abs())
     }
 }
 
-/// The part of an edge, from 0 to 1, at least, whose places along an axis lie in a slab; `unsure` is the rounding of a place.
+/// A part of an edge, from 0 to 1, that holds all of its points whose places along an axis lie in a slab.
+/// `unsure`: the rounding of a place.
 fn part_within([first, last]: [f64; 2], [low, high]: [f64; 2], unsure: f64) -> Option<[f64; 2]> {
     if first.max(last) < low || first.min(last) > high {
         return None;
@@ -251,7 +261,7 @@ fn part_within([first, last]: [f64; 2], [low, high]: [f64; 2], unsure: f64) -> O
     let rise = last - first;
     let at = |place: f64, side: f64| {
         let (at, off) = ((place - first) / rise, unsure / rise.abs());
-        // Along an edge that hardly rises nothing is left out.
+        // An edge that hardly rises counts as a whole.
         let at = at + side * off;
         if at.is_finite() { at.clamp(0.0, 1.0) } else { 0.5 + 0.5 * side }
     };
@@ -335,8 +345,8 @@ mod tests {
         assert!(in_part > 10, "{in_part}");
     }
 
-    /// A blade that turns about an axis askew in its mesh, which lies far from the origin of its frame, so that the ends of that axis are
-    /// rounded; it begins where it passes a point closest.
+    /// A blade that turns about an axis askew in its mesh, which lies far from the origin of its frame, so
+    /// that the ends of that axis are rounded. It starts where it is closest to a point.
     #[test]
     fn the_axis_of_a_mesh_that_lies_far_away_is_no_more_exact_than_its_numbers() {
         let state = &mut KnuthRandom(11);
@@ -362,11 +372,11 @@ mod tests {
             assert!(!is_apart_along_axis(bodies, 1.0, 1.0, least * (1.0 + 1e-12)), "{k}: {least}");
             shown += usize::from(is_apart_along_axis(bodies, 1.0, 1.0, 0.99 * least));
         }
-        // But for axes near to those of the mesh.
+        // Except for axes near to those of the mesh.
         assert!(shown > 90, "{shown}");
     }
 
-    /// Spheres in shells that turn as they like.
+    /// Spheres in shells that turn in any way.
     #[test]
     fn spheres_in_shells_are_as_far_apart_as_is_shown() {
         let state = &mut KnuthRandom(7);

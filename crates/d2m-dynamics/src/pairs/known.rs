@@ -1,4 +1,4 @@
-//! What is known of pairs of bodies, and the queries about them.
+//! Pairs of bodies: what is known of them, and the queries about them.
 
 use crate::body::rigid_body::RigidBody;
 use crate::pairs::clearance::{
@@ -19,54 +19,57 @@ use d2m_contact::{ContactPoint, Momenta};
 use d2m_motion::{ConstantTwist, Pose};
 use glam::DVec3;
 
-/// The part of the gap at which a flight ends.
+/// A flight ends at this part of the gap.
 const STOP: f64 = 0.5;
-/// Of the distance of a pair that is closer than that, the part at which its next flight ends.
+/// For a pair that is closer than that, the next flight ends at this part of its distance.
 const HALF: f64 = 0.5;
-/// The tolerance of a query: this part of the separation. A flight then ends between it and 1.21 times it.
+/// The tolerance of a query, as a part of the separation. A flight then ends between that and 1.21 times it.
 const SLACK: f64 = 0.0625;
-/// Of the radius of the smaller body, the separation below which a pair is held, 2⁻³⁸; the least tolerance is a quarter of it. The rounding of placed
-/// points (fewer than 40 operations of 2⁻⁵³ each) shows in the next halvings: of bodies that graze each other some queries then take a million node tests.
+/// A pair is held below a separation of this part of the smaller body's radius, 2⁻³⁸; the least tolerance is
+/// a quarter of it. The rounding of placed points (fewer than 40 operations of 2⁻⁵³ each) shows in the next
+/// halvings: some queries of bodies that graze each other take a million node tests then.
 const LEAST: f64 = 1.0 / (1u64 << 38) as f64;
 
-/// Features of a pair from which on fewer are sought, and up to which more are.
+/// A pair with more features than this is searched in a smaller part of the way, one with fewer than `FEW` in
+/// a larger one.
 const MANY: usize = 128;
 const FEW: usize = 32;
-/// The least part of the way.
+/// The smallest part of the way.
 const LEAST_REACH: f64 = 1.0 / 64.0;
 
-/// Flights for which a proof that has failed is not tried at most.
+/// The most flights for which a proof that has failed is not tried.
 const MOST_WAITING: u32 = 16;
 
 /// A pair of bodies that may come close.
 #[derive(Clone, Debug)]
 pub(crate) struct Pair {
     pub(crate) cache: Box<PairCache>,
-    /// The distance that these two keep.
+    /// The distance that these two bodies keep.
     pub(crate) gap: f64,
     /// The closest features when last measured, with the impulses of the last step.
     pub(crate) contacts: Vec<ContactPoint>,
-    /// Their least distance; none: further apart than the margin.
+    /// Their smallest distance; none: further apart than the margin.
     pub(crate) nearest: Option<f64>,
-    /// When they were measured last.
+    /// The time of that measurement.
     pub(crate) measured: Option<f64>,
-    /// Features are measured within this part of the way that the bodies may come closer in a flight.
+    /// Features are measured within this part of the way by which the bodies may approach in a flight.
     pub(crate) reach: f64,
-    /// How far apart they are proven to be.
+    /// A proven distance, at two poses.
     pub(crate) clearance: Option<Clearance>,
     /// A direction that may separate them, from a to b.
     pub(crate) normal: Option<DVec3>,
-    /// About how far apart the bodies were when measured last: at least so far, to rounding.
+    /// A lower bound, to rounding, of the distance when measured last.
     pub(crate) apart: f64,
-    /// When a proof from an axis is tried.
+    /// The times at which a proof from an axis is tried.
     pub(crate) axes: Attempts,
-    /// What the contacts do to each of the bodies, in a unit of time, on average; where it sleeps, what they did when it fell asleep.
+    /// The average impulse of the contacts on each body, by time; on a sleeping one the average when it fell
+    /// asleep.
     pub(crate) borne: [Momenta; 2],
-    /// What they do to it besides that while it sleeps, on average.
+    /// The average of what acts on it besides that while it sleeps.
     pub(crate) owed: [Momenta; 2],
 }
 
-/// What is tried again after as many flights as it has failed in a row.
+/// A proof is tried again after as many flights as it has failed in a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Attempts {
@@ -75,7 +78,7 @@ pub(crate) struct Attempts {
 }
 
 impl Attempts {
-    /// Are these numbers that counting comes to?
+    /// Are these numbers to which counting leads?
     pub(crate) fn is_counted(self) -> bool {
         self.failed.max(self.wait) <= MOST_WAITING
     }
@@ -114,8 +117,9 @@ impl Pair {
         }
     }
 
-    /// Takes over what was measured: none, if nothing is within the margin. Of bodies that many features of are close, as of a
-    /// screw in its nut, those further away are left to later: should one of them be met, that is an event.
+    /// Keeps what was measured: no contacts, if nothing is within the margin. If many features of two bodies
+    /// are close, as of a screw in its nut, those further away are left out from the next time on: should one
+    /// of them be met, that is an event.
     pub(crate) fn keep(&mut self, measured: Measured, time: f64, gap: f64) {
         let Measured { mut contacts, features, apart, normal } = measured;
         self.apart = apart;
@@ -133,7 +137,7 @@ impl Pair {
         (self.contacts, self.measured) = (contacts, Some(time));
     }
 
-    /// Are the bodies further apart than this at a time, as follows from what is known of them?
+    /// Are the bodies further apart than this at a time, by what is known of them?
     pub(crate) fn is_beyond(&self, margin: f64, bodies: [&RigidBody; 2], time: f64) -> bool {
         let placed = Placed::at(bodies, time);
         let along = |normal| bound_along(normal, DVec3::ZERO, &placed, 0.0);
@@ -151,13 +155,13 @@ impl Pair {
 /// How a flight of two bodies ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Outcome {
-    /// Certified free until the end of the window.
+    /// Certified free of contact until the end of the window.
     Clear,
     /// Certified free before `lo`; close at some time until `hi`.
     Meets { lo: f64, hi: f64, normal: DVec3, closing: f64 },
     /// The budget of the query is used up; certified free until then.
     ClearUntil(f64),
-    /// Closer than can be certified.
+    /// The bodies are closer than can be certified.
     Stuck,
 }
 
@@ -170,7 +174,7 @@ pub(crate) fn solid_of(a: &RigidBody, b: &RigidBody) -> Solid {
     if a.solid == Solid::Filled && b.solid == Solid::Filled { Solid::Filled } else { Solid::Surface }
 }
 
-/// When do two bodies come as close as their pair may on their flights?
+/// Finds when two bodies come as close in their flights as their pair may.
 pub(crate) fn fly(
     a: &RigidBody,
     b: &RigidBody,
@@ -226,8 +230,9 @@ fn first_meeting(
     time_of_contact_with(one, two, window, &options, cache)
 }
 
-/// The meeting of bodies that were closer than flights may end, and have parted on the way to it, as what rattles on a pin: from there on their
-/// flights end where others do. `None`: they have not parted so far.
+/// Bodies that were closer than the separation at which flights usually end may part before they meet, as a
+/// ring that rattles on a pin. Then this is their meeting at the usual separation. `None`: they have not
+/// parted so far.
 fn met_with_room(
     bodies: [&RigidBody; 2],
     window: Window,
@@ -245,8 +250,9 @@ fn met_with_room(
     Ok(found.contact().filter(|found| found.start == StartState::Apart).copied())
 }
 
-/// Until when the bodies stay apart by more than a query would call met, as follows from their distance, along a direction or from an axis: a query
-/// would answer so, too. No earlier than the window begins.
+/// Until when the bodies are proven further apart than a query would call a meeting: from their distance,
+/// along a direction or from an axis. A query would answer so, too. The time is no earlier than the start of
+/// the window.
 fn proven_clear_until(
     a: &RigidBody,
     b: &RigidBody,
@@ -276,7 +282,8 @@ fn proven_clear_until(
         }
         pair.axes.failed();
     }
-    // Worth the distance where it will do, or where no direction is known, or none from the present poses of bodies whose vertices are few.
+    // The distance is worth its cost where it is enough; where no direction is known; and where the direction
+    // does not come from the present poses of bodies with few vertices.
     let poses = placed.poses;
     let will_do = pair.measured == Some(now) && pair.apart - approach([a, b]) * length > needed;
     let is_old = pair.contacts.is_empty() && have_few_vertices([a, b]);
@@ -315,8 +322,9 @@ pub(crate) fn distance_of(
     Ok(found.map(|found| found.with_radii(radii)))
 }
 
-/// A point that two bodies share since one of them is solid and holds the other, a mere surface; `None`: they do not. [`distance_of`]
-/// takes such bodies for surfaces. Those are at least `apart` from each other, in which a tolerance has room.
+/// A point that two bodies share because one of them is solid and holds the other, a mere surface; `None`:
+/// there is none. [`distance_of`] takes such bodies for surfaces. The surfaces are at least `apart` from each
+/// other, which gives room for a tolerance.
 pub(crate) fn held_at(
     bodies: [&RigidBody; 2],
     poses: [Pose; 2],
@@ -367,13 +375,14 @@ mod tests {
         body
     }
 
-    /// Cubes that come together from a distance, where the pair keeps a gap that they are closer than.
+    /// Cubes that approach each other, of a pair that keeps a gap although they are closer.
     fn met(a: &RigidBody, b: &RigidBody, nearest: f64, node_tests: u64) -> Outcome {
         let mut pair = Pair { nearest: Some(nearest), ..Pair::new(1e-9) };
         fly(a, b, Window::try_new(1.0, 2.0).unwrap(), node_tests, &mut pair).unwrap()
     }
 
-    /// Far from the origin flights end as long as rounding where the next one begins leaves some of the distance: what is closer is held.
+    /// Far from the origin flights end as long as the rounding where the next one begins leaves some of the
+    /// distance; bodies that are closer are held.
     #[test]
     fn flights_end_further_apart_than_rounding_moves_bodies() {
         let (mut ended, mut held) = (0, 0);
@@ -419,7 +428,7 @@ mod tests {
             let found = distance_of([&still, &coming], poses, f64::INFINITY, &mut PairCache::new());
             let (found, nearest) = (found.unwrap().unwrap(), 4e-15 * 2.0f64.powi(k % 8));
             coming.position -= found.normal * (found.lower - nearest);
-            // They slide along each other, and close in slowly.
+            // They slide along each other, and approach slowly.
             let at = |body: &RigidBody, point: DVec3| {
                 let Velocity { linear, angular } = body.present_velocity();
                 linear + angular.cross(point - body.pose_at(1.0).translation)
@@ -437,7 +446,8 @@ mod tests {
         assert!(ended > 100 && held > 10, "{ended} {held}");
     }
 
-    /// Spheres that are apart by less than rounding moves bodies on their common way leave out no pair, whatever the gap is.
+    /// A pair of spheres that are apart by less than rounding moves bodies on their common way is queried,
+    /// whatever the gap is.
     #[test]
     fn what_rounding_could_move_together_is_queried() {
         let fast = Velocity { linear: DVec3::Y * 1e5, ..Velocity::default() };

@@ -1,4 +1,4 @@
-//! Pairs of bodies: who is near whom, what is proven of their flights, and the contacts that they have.
+//! Pairs of bodies: which are near each other, what is proven of their flights, and their contacts.
 pub(crate) mod clearance;
 pub(crate) mod closest_features;
 #[cfg(feature = "audit")]

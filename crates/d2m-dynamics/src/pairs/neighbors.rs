@@ -5,28 +5,31 @@ use d2m_interval::Interval;
 use d2m_motion::RigidMotion;
 use d2m_world::{Aabb, BoxTree};
 
-/// Boxes are grown by this part of their bodies' radius for the lists of neighbors, which hold as long as no body leaves its grown box.
+/// The boxes for the lists of neighbors are grown by this part of their bodies' radius. The lists hold as
+/// long as no body leaves its grown box.
 const GROWN: f64 = 0.125;
 
-/// What each body sweeps on its present flight, computed when it begins another one, and the bodies near it.
+/// The volume that each body sweeps in its present flight, computed when it begins another one, and the
+/// bodies near it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Neighbors {
     boxes: Vec<Aabb>,
-    /// Of which flight, until when, and by how much the box is grown; none: nothing is known of the place.
+    /// The flight, its end and the margin of each box; none: the box is not known.
     known: Vec<Option<Known>>,
-    /// Boxes that hold those; bodies are neighbors if these meet.
+    /// Larger boxes; bodies are neighbors if these meet.
     grown: Vec<Aabb>,
     tree: BoxTree,
-    /// Where the neighbors of each body begin in `others`, and where the last ones end.
+    /// The index in `others` of the first neighbor of each body, and the end of the last list.
     starts: Vec<usize>,
     others: Vec<u32>,
-    /// Something has been forgotten since the neighbors were found.
+    /// Has a body been forgotten since the neighbors were found?
     is_forgotten: bool,
 }
 
 /// Encloses the body at all times of its flight from its state's time to `end`, grown by `margin`.
 ///
-/// The center moves on a straight line and no point is further from it than the radius. What stands still has the same box whenever it is computed.
+/// The center moves on a straight line and no point is further from it than the radius. A body at rest has
+/// the same box whenever it is computed.
 fn swept(body: &RigidBody, end: f64, margin: f64) -> Aabb {
     if body.stands_still() {
         return posed(body, body.flight.reference_time(), margin);
@@ -44,7 +47,7 @@ pub(crate) fn posed(body: &RigidBody, time: f64, margin: f64) -> Aabb {
     swept.grown(margin)
 }
 
-/// What a box is for: it holds as long as these are the same.
+/// The inputs of a box: it holds as long as these are the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Known {
     version: u64,
@@ -54,7 +57,7 @@ struct Known {
 }
 
 impl Neighbors {
-    /// Brings boxes and neighbors to the flights to `end`, boxes grown by `margin`.
+    /// Updates boxes and neighbors for the flights to `end`, with boxes grown by `margin`.
     pub(crate) fn update(&mut self, bodies: &[RigidBody], end: f64, margin: f64) {
         let mut is_old = self.is_forgotten || self.starts.len() != bodies.len() + 1;
         self.boxes.truncate(bodies.len());
@@ -79,7 +82,7 @@ impl Neighbors {
         }
     }
 
-    /// The body of this place is another one now, or another kind of one: neither its box nor its neighbors count any more.
+    /// Forgets the box and the neighbors of this place: its body is another one now, or has changed.
     pub(crate) fn forget(&mut self, place: usize) {
         if let Some(known) = self.known.get_mut(place) {
             *known = None;
@@ -87,7 +90,7 @@ impl Neighbors {
         self.is_forgotten = true;
     }
 
-    /// The neighbors of all bodies.
+    /// Finds the neighbors of all bodies.
     fn find(&mut self, bodies: &[RigidBody]) {
         let grown = self
             .boxes
@@ -97,7 +100,7 @@ impl Neighbors {
         self.grown = grown.collect();
         let mut pairs = Vec::new();
         self.tree.fit(&self.grown);
-        // What no force moves meets nothing of its kind.
+        // Two bodies that are not dynamic do not meet.
         self.tree.pairs(&self.grown, 0.0, |pair| {
             if pair.iter().any(|&place| bodies[place as usize].is_dynamic()) {
                 pairs.push(pair);
@@ -123,14 +126,16 @@ impl Neighbors {
         }
     }
 
-    /// The pairs of one of these bodies and any other whose boxes may meet and that `wanted` wants, smaller number first, ascending.
+    /// The pairs, ascending, of one of these bodies and any other whose boxes may meet and that are `wanted`;
+    /// the smaller number first.
     pub(crate) fn pairs(&self, of: &[usize], wanted: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
         let mut pairs = Vec::new();
         let mut is_of = vec![false; self.boxes.len()];
         for &i in of {
             is_of[i] = true;
         }
-        // Of two of them the one with the smaller number has the pair: of all bodies the pairs are in order as they are found.
+        // The body with the smaller number adds a pair of two of them: for all bodies the pairs are found in
+        // order.
         for &i in of {
             for &j in &self.others[self.starts[i]..self.starts[i + 1]] {
                 let j = j as usize;

@@ -1,11 +1,12 @@
-//! Proofs for parts of a flight, where one for all of it fails.
+//! Proofs for parts of a flight, where one for the whole flight fails.
 
 use d2m_bvh::Window;
 
-/// Parts of a flight that are tried one by one.
+/// The number of equal parts of a flight.
 pub(crate) const MOST: u32 = 8;
 
-/// Until when something holds in a window, as `is_proven` shows of times from one to another one: no earlier than the window begins.
+/// Until when something is proven in a window; `is_proven` judges the times from one to another one. No
+/// earlier than the window begins.
 pub(crate) fn proven_until(window: Window, is_proven: impl Fn(f64, f64) -> bool) -> f64 {
     let time = |part: u32| {
         let passed = window.length() * (f64::from(part) / f64::from(MOST));
@@ -27,7 +28,7 @@ mod tests {
     use super::*;
     use std::cell::RefCell;
 
-    /// What is shown of parts holds as far as these follow each other without a gap.
+    /// A proof by parts holds as far as these follow each other without a gap.
     #[test]
     fn what_is_proven_of_parts_holds_until_the_first_one_that_fails() {
         let window = Window::try_new(2.0, 10.0).unwrap();

@@ -1,4 +1,4 @@
-//! Which bodies touch, and since when.
+//! Touches: which bodies touch, and since when.
 
 use crate::body::rigid_body::Role;
 use crate::pairs::closest_features::AROUND;
@@ -21,22 +21,23 @@ impl Simulation {
         self.touches.push(TouchEvent { a, b, time, change });
     }
 
-    /// An impulse has acted between two bodies.
+    /// Begins a touch: an impulse has acted between two bodies.
     pub(crate) fn begin_touch(&mut self, pair: (usize, usize), time: f64) {
         if self.touching.insert(pair) {
             self.report_touch(pair, time, TouchChange::Began);
         }
     }
 
-    /// Two bodies are clear of each other.
+    /// Ends a touch: two bodies are clear of each other.
     pub(crate) fn end_touch(&mut self, pair: (usize, usize), time: f64) {
         if self.touching.remove(&pair) {
             self.report_touch(pair, time, TouchChange::Ended);
         }
     }
 
-    /// At the end of a step that began at a time, in which impulses acted between the pairs `pressed`: pairs without, one of which moves and
-    /// whose bodies were found apart, touch no more. Nor do those that meet no more, wherever they are: nobody looks for them.
+    /// At the end of a step that began at a time, ends the touches of pairs without impulses (`pressed` are
+    /// those with some) that were found apart, if one of the bodies moves; and of pairs that may not meet any
+    /// more, wherever they are: these are queried no longer.
     pub(crate) fn end_touches(&mut self, began: f64, pressed: &BTreeMap<(usize, usize), [Momenta; 2]>) {
         let most = AROUND * self.options.gap;
         let is_near = |pair: &(usize, usize)| {
@@ -55,7 +56,7 @@ impl Simulation {
         }
     }
 
-    /// A body is about to go.
+    /// Ends the touches of a body that is about to be removed.
     pub(crate) fn end_touches_of(&mut self, place: usize) {
         let has = |&&(a, b): &&(usize, usize)| a == place || b == place;
         let ended: Vec<(usize, usize)> = self.touching.iter().filter(has).copied().collect();
