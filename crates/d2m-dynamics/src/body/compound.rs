@@ -7,7 +7,7 @@ use d2m_bvh::{MeshTree, TriMesh};
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
-/// A mesh of a body of several ones: where it is in the body, and how heavy.
+/// A mesh of a body of several ones: its place in the body, and its density.
 ///
 /// ```
 /// use d2m_dynamics::Part;
@@ -19,27 +19,28 @@ use std::sync::Arc;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Part<'m> {
-    /// Shared with other parts, or not.
+    /// The mesh; other parts may share it.
     pub mesh: &'m TriMesh,
-    /// Of the mesh's own frame in that of the body.
+    /// Position of the mesh frame in the frame of the body.
     pub position: DVec3,
-    /// Of the mesh's own frame in that of the body; normalised, zero is refused.
+    /// Orientation of the mesh frame in the frame of the body; normalised, zero is refused.
     pub orientation: DQuat,
-    /// Of the closed mesh.
+    /// Density of the closed mesh.
     pub density: f64,
 }
 
 impl<'m> Part<'m> {
-    /// In the frame of the body, with a density of 1000.
+    /// A part whose frame is that of the body, with a density of 1000.
     pub const fn new(mesh: &'m TriMesh) -> Self {
         Self { mesh, position: DVec3::ZERO, orientation: DQuat::IDENTITY, density: 1000.0 }
     }
 }
 
 impl Body {
-    /// A body of several closed meshes that are held together, with the mass of them all. Parts may overlap: each has its own mass nevertheless.
+    /// A body of several closed meshes that are held together, with the mass of them all. Parts may overlap;
+    /// each has its whole mass nevertheless.
     ///
-    /// The body is one mesh with the vertices of all parts, placed; what is certified is certified of these.
+    /// The body is one mesh with the vertices of all parts, placed; certificates are about that mesh.
     ///
     /// ```
     /// use d2m_dynamics::{Body, Part, Simulation, SimulationOptions};

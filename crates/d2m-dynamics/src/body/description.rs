@@ -1,4 +1,4 @@
-//! Bodies as they are described to a simulation.
+//! Descriptions of bodies, from which a simulation makes them.
 
 use crate::MassProperties;
 use d2m_bvh::{MeshTree, Solid};
@@ -6,7 +6,8 @@ use d2m_motion::RigidMotion;
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
-/// Names a body of one [`Simulation`](crate::Simulation). The name of a body that was removed never means another one.
+/// The name of a body of one [`Simulation`](crate::Simulation). The name of a removed body never means
+/// another one.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -28,8 +29,8 @@ pub struct BodyId {
 }
 
 impl BodyId {
-    /// The place of the body: bodies are numbered in the order in which they were added, from 0; one that is added after others were
-    /// removed takes the first place that is free.
+    /// The place of the body. Bodies are numbered in the order in which they were added, from 0; one that is
+    /// added after others were removed takes the first free place.
     pub const fn index(self) -> usize {
         self.place as usize
     }
@@ -115,7 +116,8 @@ pub enum Mass {
 
 /// A body to be added to a [`Simulation`](crate::Simulation).
 ///
-/// Default: dynamic, mesh frame = world frame, at rest, density 1000, no restitution, no friction; solid if its mesh is watertight.
+/// Default: dynamic, mesh frame = world frame, at rest, density 1000, no restitution, no friction; solid if
+/// its mesh is watertight.
 ///
 /// ```
 /// use d2m_bvh::MeshTree;
@@ -147,7 +149,7 @@ pub struct Body {
     pub linear_velocity: DVec3,
     /// Angular velocity, world axes.
     pub angular_velocity: DVec3,
-    /// Of a dynamic body; the others need none.
+    /// Mass of a dynamic body; the others need none.
     pub mass: Mass,
     /// Coefficient of restitution, from 0 to 1. A contact has the greater one of its two bodies.
     pub restitution: f64,
@@ -155,20 +157,21 @@ pub struct Body {
     pub friction: f64,
     /// Solid, or only a surface. `None`: solid if the mesh is watertight.
     pub solid: Option<Solid>,
-    /// The body is everything within this distance of its mesh. Its mass does not follow from it: that is the mesh's, or given.
+    /// The body is everything within this distance of its mesh. Its mass does not depend on it: that is the
+    /// mesh's, or given.
     pub radius: f64,
     /// How fast its velocities fade.
     pub damping: Damping,
     /// Which bodies it may meet. Default: all.
     pub groups: Groups,
-    /// How fast the surface runs over the body, mesh axes: what touches it is taken along by friction, as by a conveyor belt. At a
-    /// contact only the part along the surface counts. Default zero.
+    /// Velocity of the surface over the body, mesh axes: friction takes along whatever touches it, as on a
+    /// conveyor belt. At a contact only the part along the surface counts. Default zero.
     pub surface_velocity: DVec3,
-    /// What it is to others.
+    /// Whether others meet it or pass through it.
     pub presence: Presence,
 }
 
-/// What a body is to the others.
+/// Whether other bodies meet a body or pass through it.
 ///
 /// ```
 /// # use d2m_bvh::MeshTree;
@@ -195,13 +198,14 @@ pub enum Presence {
     /// Others meet it.
     #[default]
     Solid,
-    /// Others pass through it, and [`StepReport::touches`](crate::StepReport::touches) says when: between an end and the next beginning the two
-    /// are proven clear of each other at every time, however fast they are.
+    /// Others pass through it, and [`StepReport::touches`](crate::StepReport::touches) says when. Between an
+    /// end and the next beginning the two are proven clear of each other at every time, however fast they
+    /// are.
     Sensor,
 }
 
-/// Groups that a body is in, and those whose bodies it may meet, a bit each: two bodies meet if each is in a group that the other one
-/// meets. Bodies that do not meet pass through each other.
+/// The groups in which a body is, and those whose bodies it may meet, a bit each. Two bodies meet if each is
+/// in a group that the other one meets; otherwise they pass through each other.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -223,14 +227,14 @@ pub enum Presence {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Groups {
-    /// The groups that the body is in.
+    /// The groups in which the body is.
     pub member: u32,
     /// The groups whose bodies it may meet.
     pub meets: u32,
 }
 
 impl Groups {
-    /// In all groups, and meets all.
+    /// In all groups, meeting all.
     pub const ALL: Self = Self { member: u32::MAX, meets: u32::MAX };
 
     /// May a body of these groups and one of others meet?
@@ -245,7 +249,8 @@ impl Default for Groups {
     }
 }
 
-/// How fast the velocities of a dynamic body fade besides what contacts do: each by the factor exp(−rate · step) at the start of a step.
+/// How fast the velocities of a dynamic body fade, apart from contacts: each by the factor exp(−rate · step)
+/// at the start of a step.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -264,14 +269,14 @@ impl Default for Groups {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Damping {
-    /// Of the velocity of the center of mass, per unit of time; not negative.
+    /// Rate of the velocity of the center of mass, per unit of time; not negative.
     pub linear: f64,
-    /// Of the angular momentum, per unit of time; not negative.
+    /// Rate of the angular momentum, per unit of time; not negative.
     pub angular: f64,
 }
 
 impl Damping {
-    /// By their names.
+    /// The rates with their names.
     pub(crate) const fn rates(&self) -> [(&'static str, f64); 2] {
         [("linear damping", self.linear), ("angular damping", self.angular)]
     }
@@ -355,7 +360,7 @@ impl Body {
         Self { damping, ..self }
     }
 
-    /// In these groups, and meeting those of these.
+    /// In these groups, meeting the bodies of these.
     pub fn with_groups(self, groups: Groups) -> Self {
         Self { groups, ..self }
     }
@@ -365,7 +370,7 @@ impl Body {
         Self { presence, ..self }
     }
 
-    /// With a surface that runs so, mesh axes.
+    /// With a surface of this velocity, mesh axes.
     pub fn with_surface_velocity(self, surface_velocity: DVec3) -> Self {
         Self { surface_velocity, ..self }
     }

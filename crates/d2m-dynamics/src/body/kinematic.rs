@@ -1,4 +1,4 @@
-//! Bodies that follow a motion, as flights of constant twists that stay close to it.
+//! Kinematic bodies: they follow a motion by flights of constant twists that stay close to it.
 
 use crate::body::description::Kind;
 use crate::body::rigid_body::RigidBody;
@@ -10,32 +10,36 @@ use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{CoveredMotion, RigidMotion as _};
 use glam::{DQuat, DVec3};
 
-/// How far the twist of a kinematic flight may lead off the motion between its ends, of the gap.
+/// How far the twist of a kinematic flight may lead off the motion between its ends, as a part of the gap.
 const OFF_MOTION: f64 = 0.01;
-/// Halvings of what is left of a step to keep to that: 4096 flights in a step, which take seconds, are the most.
+/// The most halvings of the rest of a step to keep to that: down to 4096 flights in a step, which take
+/// seconds.
 const MOST_HALVINGS: u32 = 12;
-/// A motion turns by less than this within a flight, so the shortest turn from its first orientation to its last is the one that it makes;
-/// below π, with room for rounding.
+/// A motion turns by less than this within a flight, so the shortest turn from its first orientation to its
+/// last is the one that it makes. It is below π, with room for rounding.
 const MOST_TURN: f64 = 3.0;
 
-/// Parts of a piece over which angular velocities are enclosed.
+/// The parts of a piece over which angular velocities are enclosed.
 const PARTS: u32 = 8;
 
-/// A motion from one pose of a body to another.
+/// The motion from one pose of a body to another.
 struct Piece {
     time: Interval,
     length: f64,
-    /// Of the flight that joins the poses at both ends.
+    /// The velocity of the flight that joins the poses at both ends.
     velocity: Velocity,
 }
 
 impl RigidBody {
-    /// The next piece of a kinematic body's motion: the twist about its center that leads from where it is to the pose at the end, as long
-    /// as the motion is proven to stay close to it. It is where its last flight ended, which is off its motion by rounding, or by what an error
-    /// that ended that flight has left: were it put where its motion is, it could be put into what touches it.
+    /// Starts the next flight of a kinematic body: the twist about its center that leads from its present
+    /// pose to that of the motion at the end, as long as the motion is proven to stay close to it. The
+    /// present pose is the end of its last flight, which is off the motion by rounding, or by more after an
+    /// error that ended that flight. Placing the body on its motion instead could put it into a body that
+    /// touches it.
     ///
     /// # Errors
-    /// [`StepError::TooFast`] where no flight that is long enough does; a motion that does not cover the step.
+    /// [`StepError::TooFast`] where no flight that is long enough stays close; a motion that does not cover
+    /// the step.
     pub(crate) fn follow(&mut self, end: f64, gap: f64) -> Result<(), StepError> {
         let start = self.time;
         if matches!(self.kind, Kind::Driven) {
@@ -58,7 +62,7 @@ impl RigidBody {
         Err(StepError::TooFast { body: self.name.to_string(), time: start })
     }
 
-    /// Until when what follows its motion may go on as in its present flight: the next joint of the motion.
+    /// Until when a kinematic body may go on as in its present flight: the next joint of the motion.
     pub(crate) fn goes_on_until(&self, time: f64) -> f64 {
         match &self.kind {
             Kind::Kinematic(motion) => motion.smooth_until(time).unwrap_or(f64::INFINITY),
@@ -66,8 +70,8 @@ impl RigidBody {
         }
     }
 
-    /// How far what follows its motion is at most, at any time until then, from where its present flight would lead on: at its horizon it is where
-    /// its motion has it. None: it is not known.
+    /// A bound on the distance of a kinematic body, at any time until then, from where its present flight
+    /// would lead on; at its horizon it is on its motion. None: none is known.
     pub(crate) fn strays(&self, until: f64) -> Option<f64> {
         if self.horizon >= until {
             return Some(0.0);
@@ -84,7 +88,7 @@ impl RigidBody {
         off.sup().is_finite().then_some(off.sup())
     }
 
-    /// The flight of a driven body that ends at its target; at rest where it has none.
+    /// Starts the flight of a driven body that ends at its target; at rest where it has none.
     fn follow_target(&mut self, end: f64) -> Result<(), StepError> {
         let Some(target) = self.target else {
             self.fly(Velocity::default(), f64::INFINITY);
@@ -104,7 +108,7 @@ impl RigidBody {
         Ok(())
     }
 
-    /// The motion of a kinematic body over some times; none of other bodies.
+    /// The motion of a kinematic body over some times; none for other bodies.
     ///
     /// # Errors
     /// It does not cover them.
@@ -118,7 +122,7 @@ impl RigidBody {
         CoveredMotion::try_new(&**motion, from, to).map(Some).map_err(outside)
     }
 
-    /// Where a motion of the mesh frame has the center and the axes.
+    /// The center and the axes at a time of a motion of the mesh frame.
     fn place_by(&self, motion: CoveredMotion<'_>, time: f64) -> (DVec3, DQuat) {
         let (pose, _) = motion.motion().pose_and_twist(time);
         (pose.transform_point(self.center), pose.rotation.normalize())
@@ -134,23 +138,27 @@ impl RigidBody {
         Piece { time: Interval::new(start, end), length, velocity }
     }
 
-    /// How far a point of the body may be from where the flight has it, between the ends of a piece, at which both agree.
+    /// A bound on the distance of a point of the body in the motion from that in the flight, between the ends
+    /// of a piece, at which both agree.
     ///
-    /// The center flies straight between two points of its path: it is off by at most h²/8 of its largest acceleration. With
-    /// E = R P⁻¹ of the orientations R of the motion and P of the flight, E turns with ω − E ω₀, and the component of that along E's
-    /// own axis is the one of ω − ω₀; so the angle of E, which is zero at both ends, is at most half of the integral of |ω − ω₀|.
+    /// The center flies straight between two points of its path: it is off by at most h²/8 of its largest
+    /// acceleration. With E = R P⁻¹ of the orientations R of the motion and P of the flight, E turns with ω −
+    /// E ω₀, and the component of that along E's own axis is that of ω − ω₀. So the angle of E, which is zero
+    /// at both ends, is at most half of the integral of
+    /// ω − ω₀|.
     fn bound_deviation(&self, motion: CoveredMotion<'_>, piece: &Piece) -> f64 {
         let motion = motion.motion();
         let &Piece { time, length, velocity } = piece;
         let spin = motion.enclose_twist(time).angular;
-        // Not when it is no number either.
+        // False, too, if it is no number.
         let turns_by_less = spin.norm().hi() * length < MOST_TURN;
         if !turns_by_less {
             return f64::INFINITY;
         }
         let rate = motion.enclose_twist_rate(time);
         let pose = motion.enclose_pose(time);
-        // From the reference point to the center; what lies along the axis of a spin does not speed up.
+        // From the reference point to the center; a component along the axis of a spin causes no
+        // acceleration.
         let arm = pose.enclose_vector(self.center - pose.at);
         let acceleration = rate.linear + rate.angular.cross(arm) + spin.cross(spin.cross(arm));
         let bend = acceleration.norm().hi() * (0.125 * length * length);

@@ -1,4 +1,4 @@
-//! Bodies: what they are, where they are, what they weigh and follow.
+//! Bodies: their descriptions, states, masses and motions.
 pub(crate) mod compound;
 pub(crate) mod description;
 pub(crate) mod kinematic;

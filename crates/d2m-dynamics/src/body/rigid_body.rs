@@ -1,4 +1,4 @@
-//! The state of a body: what it is, where it is, what it weighs. What it flies: `flight`.
+//! The state of a body: its kind, place and mass. Its flights are in `flight`.
 
 use crate::body::description::{Body, BodyId, Damping, Groups, Kind, Mass, Presence};
 use crate::body::turning::Pull;
@@ -14,29 +14,29 @@ use d2m_motion::{ConstantTwist, CoveredMotion};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
-/// How far the axes of a body are followed, of how far it reaches.
+/// How far along the axes of a body bores are measured, divided by its radius.
 pub(crate) const AXES_REACH: f64 = 1.0625;
 
-/// What a place in the list of bodies is for.
+/// The use of a place in the list of bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
     Body,
     /// A body that others pass through.
     Sensor,
-    /// What joints with the world are with: nothing meets it.
+    /// The world of joints with the world: nothing meets it.
     World,
     /// Its body was removed.
     Vacant,
 }
 
 impl Role {
-    /// Of a body that a user has added.
+    /// Is it a body that a user has added?
     pub(crate) fn is_named(self) -> bool {
         matches!(self, Self::Body | Self::Sensor)
     }
 }
 
-/// Where a body is to be: its center and its axes.
+/// The target of a body: its center and its axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Target {
@@ -54,58 +54,60 @@ pub(crate) struct RigidBody {
     pub(crate) faces: Arc<Faces>,
     pub(crate) solid: Solid,
     pub(crate) kind: Kind,
-    /// Center of mass (of a body without mass: of its volume or its bounding box), mesh frame.
+    /// Center of mass in the mesh frame (without a mass: the center of its volume or its bounding box).
     pub(crate) center: DVec3,
     /// No point of the body is further from the center; rounded up.
     pub(crate) radius: f64,
     /// The body is everything within this distance of its mesh.
     pub(crate) rounding: f64,
-    /// No point of its mesh is nearer to the center; zero if the center does not lie in a cavity.
+    /// No point of its mesh is nearer to the center than this; zero if the center does not lie in a cavity.
     pub(crate) cavity: f64,
-    /// Nor to the lines through that along the axes of the mesh, as far as [`AXES_REACH`] says.
+    /// No point of its mesh is nearer than this to the axes of the mesh frame through the center, as far as
+    /// [`AXES_REACH`] says.
     pub(crate) bores: [f64; 3],
     pub(crate) damping: Damping,
     pub(crate) groups: Groups,
-    /// Mesh axes.
+    /// In mesh axes.
     pub(crate) surface_velocity: DVec3,
-    /// Where its mass comes from, when it is dynamic.
+    /// The source of its mass when it is dynamic.
     pub(crate) given: Mass,
-    /// Zero for bodies that forces cannot move, as are the other masses.
+    /// Mass and inertia are zero for bodies that forces cannot move.
     pub(crate) mass: f64,
     pub(crate) inverse_mass: f64,
     pub(crate) inertia: DMat3,
     pub(crate) inverse_inertia: DMat3,
-    /// The least and the greatest inverse of a principal moment of inertia.
+    /// The smallest and the largest inverse of a principal moment of inertia.
     pub(crate) moments: [f64; 2],
     pub(crate) restitution: f64,
     pub(crate) friction: f64,
 
-    /// When the rest of the state holds.
+    /// The time of the state below.
     pub(crate) time: f64,
     pub(crate) position: DVec3,
     pub(crate) orientation: DQuat,
     pub(crate) momentum: DVec3,
     pub(crate) angular_momentum: DVec3,
-    /// Of the user, over the next step.
+    /// Force and torque of the user over the next step.
     pub(crate) force: DVec3,
     pub(crate) torque: DVec3,
-    /// From `time` on, until `horizon` at most.
+    /// The present flight, from its reference time until `horizon` at most.
     pub(crate) flight: ConstantTwist,
     pub(crate) horizon: f64,
-    /// Changes with every flight, and with every change from outside.
+    /// Changes with every flight and with every change from outside.
     pub(crate) version: u64,
-    /// Has it begun a flight since it was added, or changed from outside? Till then its momenta say how fast it is.
+    /// Has it begun a flight since it was added or changed from outside? Before that its velocity is that of
+    /// its momenta.
     pub(crate) has_flown: bool,
-    /// Where a driven body is to be at the end of the next step.
+    /// The target of a driven body at the end of the next step.
     pub(crate) target: Option<Target>,
-    /// Stands still until the end of the step.
+    /// It stands still until the end of the step.
     pub(crate) held: bool,
-    /// The velocity of the present flight is that of the momenta after the forces of so much time; negative where the
-    /// middle of the flight that was planned has passed. None: a flight is to be planned.
+    /// The velocity of the present flight is that of the momenta after forces have acted for this time;
+    /// negative where the middle of the planned flight has passed. None: a flight has to be planned.
     pub(crate) lead: Option<f64>,
     /// Nothing touches it in this flight.
     pub(crate) free: bool,
-    /// The account of energy: what contacts have added to the least energy before.
+    /// The energy account: the energy that contacts have added to the least energy before.
     pub(crate) gained: f64,
     pub(crate) asleep: bool,
     /// For how long it has been quiet.
@@ -231,14 +233,15 @@ impl RigidBody {
         Ok(made)
     }
 
-    /// Two additions to the momenta, linear and angular, and what is given for them, by its names: refused if they are not finite, or if the body would have
-    /// momenta or velocities above [`Simulation::LARGEST`](crate::Simulation::LARGEST).
+    /// Checks two additions to the momenta, linear and angular, with the given quantities behind them and
+    /// their names. They are refused if they are not finite, or if the body would have momenta or velocities
+    /// above [`Simulation::LARGEST`](crate::Simulation::LARGEST).
     pub(crate) fn check_momenta(
         &self,
         given: [(&'static str, DVec3); 2],
         [linear, angular]: [DVec3; 2],
     ) -> Result<(), SimulationError> {
-        // Also what is not a number is refused.
+        // Numbers that are NaN are refused, too.
         let refuse = |(name, value): (&'static str, DVec3)| {
             Err(SimulationError::TooLarge { body: self.name.to_string(), name, value })
         };
@@ -266,12 +269,12 @@ impl RigidBody {
         matches!(self.kind, Kind::Kinematic(_) | Kind::Driven)
     }
 
-    /// A driven body that stands still and stays there.
+    /// A driven body that stands still and has no target.
     fn is_parked(&self) -> bool {
         matches!(self.kind, Kind::Driven) && self.target.is_none() && self.stands_still()
     }
 
-    /// Does it follow a motion that leads on?
+    /// Is it a kinematic body that moves?
     pub(crate) fn is_driven(&self) -> bool {
         self.is_kinematic() && !self.stands_still()
     }
@@ -281,7 +284,7 @@ impl RigidBody {
         (self.is_dynamic() && !self.asleep) || (self.is_kinematic() && !self.is_parked())
     }
 
-    /// If it sleeps it is simulated again, from this time on.
+    /// Wakes it if it sleeps: it is simulated again from this time on.
     pub(crate) fn wake(&mut self, time: f64) {
         if self.asleep {
             self.asleep = false;
@@ -290,17 +293,17 @@ impl RigidBody {
         }
     }
 
-    /// How fast the surface runs, world axes.
+    /// The velocity of a running surface, world axes.
     pub(crate) fn surface_velocity_at(&self, orientation: DQuat) -> DVec3 {
         orientation * self.surface_velocity
     }
 
-    /// The body on a motion, solid or a surface as it is.
+    /// The body on a motion, as a solid or a surface, as it is.
     pub(crate) fn moving_on<'a>(&'a self, motion: &'a ConstantTwist) -> Moving<'a> {
         Moving::new(&*self.tree, motion).with_solid(self.solid).with_radius(self.rounding)
     }
 
-    /// Velocities fade for so much time.
+    /// Lets the velocities fade for a time.
     pub(crate) fn damp(&mut self, time: f64) {
         // The nearest number to the exponential, with the same bits everywhere.
         let factor = |rate: f64| Interval::point(-rate * time).exp().mid();
@@ -312,7 +315,7 @@ impl RigidBody {
         }
     }
 
-    /// Of gravity and the user.
+    /// The force of gravity and of the user.
     pub(crate) fn force_with(&self, gravity: DVec3) -> DVec3 {
         self.force + gravity * self.mass
     }
@@ -333,13 +336,14 @@ impl RigidBody {
         self.gained += self.kinetic_energy() - before;
     }
 
-    /// Of the momenta.
+    /// The kinetic energy of the momenta.
     pub(crate) fn kinetic_energy(&self) -> f64 {
         let turn = self.inverse_inertia_at(self.orientation) * self.angular_momentum;
         0.5 * (self.momentum.length_squared() * self.inverse_mass + self.angular_momentum.dot(turn))
     }
 
-    /// What the account of energy may hold: the energy of the forces' impulse over half a step, and that of a lift by a gap.
+    /// The limit of the energy account: the energy of the forces' impulse over half a step, and that of a
+    /// lift by a gap.
     pub(crate) fn energy_limit(&self, gravity: DVec3, step: f64, gap: f64) -> f64 {
         let force = self.force_with(gravity);
         let (linear, angular) = (force * (0.5 * step), self.torque * (0.5 * step));
@@ -347,7 +351,7 @@ impl RigidBody {
         0.5 * (linear.length_squared() * self.inverse_mass + angular.dot(turn)) + force.length() * gap
     }
 
-    /// Velocity at `time`, as the momenta have it.
+    /// The velocity of the momenta at `time`.
     pub(crate) fn velocity(&self) -> Velocity {
         let r = DMat3::from_quat(self.orientation);
         let angular = r * (self.inverse_inertia * (r.transpose() * self.angular_momentum));
@@ -359,27 +363,27 @@ impl RigidBody {
         r * self.inverse_inertia * r.transpose()
     }
 
-    /// Against what changes its spin, with what a pull adds to it.
+    /// The inverse inertia against changes of the spin, with the brake of a pull.
     pub(crate) fn inverse_inertia_under(&self, orientation: DQuat, pull: Option<Pull>) -> DMat3 {
         let Some(pull) = pull else { return self.inverse_inertia_at(orientation) };
         let r = DMat3::from_quat(orientation);
         (r * self.inertia * r.transpose() + pull.stiffness).inverse()
     }
 
-    /// Is somewhere else, by the way that a velocity leads in a unit of time.
+    /// Moves the body by a velocity in one unit of time.
     pub(crate) fn shift(&mut self, by: Velocity) {
         self.position += by.linear;
         self.orientation = self.turned(by.angular, 1.0).normalize();
         self.flight = self.flight.with_position(self.position).with_orientation(self.orientation);
     }
 
-    /// What a query of this body with another one failed by.
+    /// The error of a query of this body and another one.
     pub(crate) fn query_error(&self, other: &Self, error: QueryError) -> SimulationError {
         SimulationError::Query { a: self.name.to_string(), b: other.name.to_string(), error }
     }
 }
 
-/// A flight that leads nowhere. None: numbers that are none, or too large.
+/// A flight at rest. None: the numbers are not finite, or too large.
 pub(crate) fn rest(center: DVec3, position: DVec3, orientation: DQuat, time: f64) -> Option<ConstantTwist> {
     ConstantTwist::try_new(position, orientation, DVec3::ZERO, DVec3::ZERO)
         .and_then(|flight| flight.try_with_at(center))
@@ -387,7 +391,7 @@ pub(crate) fn rest(center: DVec3, position: DVec3, orientation: DQuat, time: f64
         .ok()
 }
 
-/// Of a mesh without mass: the center of its volume if it is closed, of its bounding box otherwise.
+/// The center of a mesh without mass: that of its volume if it is closed, else of its bounding box.
 fn middle(tree: &MeshTree) -> DVec3 {
     if tree.is_watertight() {
         let solid = MassProperties::of_enclosed(tree.mesh());
