@@ -285,8 +285,8 @@ impl Joined {
         let points = [0, 1].map(|k| pair[k].position + arms[k]);
         let axis = pair[0].orientation * self.axes[0];
         let mut made = Made { joined: self, number, arms, point: points[1], rows: Vec::new() };
-        // Both arms reach to one point, so that impulses add no angular momentum: to that of b, where the two
-        // slide apart.
+        // Both arms reach to one point, so that impulses add no angular momentum: to that of b, which differs on
+        // a slide.
         if matches!(self.joint.kind, JointKind::Locked { .. }) {
             // The world has no angular momentum to keep: locks act at the center.
             made.arms[1] = points[0] - pair[1].position;

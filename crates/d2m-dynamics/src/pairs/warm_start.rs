@@ -1,18 +1,21 @@
-//! What the contacts of a pair take over of the impulses of those before them.
+//! Warm start: the impulses that the contacts of a pair inherit from those before them.
 
 use d2m_contact::ContactPoint;
 use glam::DVec3;
 
-/// Rounds over the contacts of a pair, and more as long as each leaves less than a part of what is missing, squared: where no law forbids it.
+/// Rounds over the contacts of a pair. More follow as long as each leaves less than the part [`GAINED`] of
+/// the square of what was missing, which is so where no friction cone limits the impulses.
 const ROUNDS: u32 = 12;
 const GAINED: f64 = 0.9;
-/// The part of a push that need not be shared out better: under twenty others a body is pushed off by less than quiet ones move.
+/// The part of a push that may be missing: under twenty others a body is pushed off by less than quiet bodies
+/// move.
 const ENOUGH: f64 = 1.0 / (1u64 << 19) as f64;
 
-/// Takes over the impulses of contacts of the same features; what features that are gone had goes to the nearest contacts, new ones first:
-/// of faces that slide along each other vertices leave and edges cross, but what they press with stays. Then all of them share it out, so that
-/// together they push and turn as those before: of two faces now these features are the contacts and now others, and a body that is pushed
-/// elsewhere than before has to be solved for anew.
+/// Contacts of the same features inherit their impulses. Those of features that are gone go to the nearest
+/// contacts, new ones first: where faces slide along each other vertices leave and edges cross, but the load
+/// stays. Then all contacts share the impulses out, so that together they push and turn as those before. Of
+/// two faces now these features are the contacts and now others, and a body that is pushed elsewhere than
+/// before has to be solved anew.
 pub(crate) fn inherit(contacts: &mut [ContactPoint], old: &[ContactPoint]) {
     let mut is_new = vec![true; contacts.len()];
     let mut gone = Vec::new();
@@ -41,14 +44,14 @@ pub(crate) fn inherit(contacts: &mut [ContactPoint], old: &[ContactPoint]) {
 
 fn add_to(contact: &mut ContactPoint, impulse: DVec3) {
     contact.impulse += impulse.dot(contact.normal).max(0.0);
-    // The normal has turned a little: without friction what was along it must not push along the tangents.
+    // The normal has turned a little: without friction an impulse along it must not act along the tangents.
     if contact.material.friction > 0.0 {
         let [t, u] = contact.tangents;
         contact.sliding = [contact.sliding[0] + impulse.dot(t), contact.sliding[1] + impulse.dot(u)];
     }
 }
 
-/// What some impulses at arms are together: their sum, and that of what they turn about a point.
+/// The sum of some impulses at arms, and their moment about a point.
 #[derive(Clone, Copy)]
 struct Wrench {
     push: DVec3,
@@ -65,15 +68,16 @@ impl Wrench {
     }
 }
 
-/// Changes the impulses so that together they come nearer to those before: each in turn takes what is missing along its own directions, as far
-/// as its law allows.
+/// Changes the impulses so that their sums come nearer to those before: each contact in turn takes what is
+/// missing along its own directions, as far as the law of friction allows.
 ///
 /// ```text
 /// least   |Σ λᵢ − p|² + |Σ rᵢ × λᵢ − m|² / ρ²      λᵢ in Coulomb's cone
 /// ```
 ///
-/// p and m: push and turn before, about the middle of the contacts; rᵢ: from there; ρ: how far they are from the center of one of the bodies, in
-/// the quadratic mean. (That they are from their middle is no measure: contacts that are close together would push against each other.)
+/// p and m: push and moment before, about the middle of the contacts; rᵢ: from there; ρ: the distance of the
+/// contacts from the center of one of the bodies, in the quadratic mean. (Their distance from their middle is
+/// no measure: contacts that are close together would push against each other.)
 fn share_out(contacts: &mut [ContactPoint], old: &[ContactPoint]) {
     if contacts.len() < 2 || old.iter().all(|before| before.impulse == 0.0) {
         return;
@@ -145,7 +149,8 @@ mod tests {
         ((one.push - other.push).length() + (one.turn - other.turn).length()) / other.push.length()
     }
 
-    /// Four corners bear a body, one most of it; then a corner and the crossings of edges around another do.
+    /// Four corners bear a body, one most of it; then a corner and the crossings of edges around another one
+    /// do.
     #[test]
     fn what_other_features_bear_pushes_and_turns_as_before() {
         let none = [0.0; 3];
@@ -176,7 +181,8 @@ mod tests {
         }
     }
 
-    /// Contacts that are close together cannot turn a body as those that were far apart did: they push no harder for it.
+    /// Contacts that are close together cannot turn a body as those did that were far apart: they do not push
+    /// harder for it.
     #[test]
     fn contacts_that_are_close_together_do_not_push_against_each_other() {
         let old = [at(0, 0.2, 0.0, [5.0, -0.3, -2.0]), at(1, 0.25, 0.1, [1.0, 0.1, 0.0])];
