@@ -1,4 +1,4 @@
-//! What may be changed of a running simulation, between two steps.
+//! Changes of a running simulation, between two steps.
 
 use crate::body::description::{Damping, Groups, Kind};
 use crate::body::rigid_body::{RigidBody, Target};
@@ -10,11 +10,13 @@ use d2m_motion::Pose;
 use glam::DVec3;
 
 impl Simulation {
-    /// Puts the mesh frame of a dynamic or static body somewhere else, at once; its velocities stay what they are, and it is awake.
+    /// Puts the mesh frame of a dynamic or static body somewhere else, at once. The body keeps its
+    /// velocities, and is awake.
     ///
     /// # Errors
-    /// [`SimulationError::Intersecting`] if it would intersect a body that it meets there (it may touch it, up to rounding);
-    /// [`SimulationError::BadBody`] of numbers that cannot be used, and of a body that follows its motion or its targets. Nothing changes then.
+    /// [`SimulationError::Intersecting`] if it would intersect a body that it meets there (it may touch it,
+    /// up to rounding); [`SimulationError::BadBody`] for numbers that cannot be used, and for a body that
+    /// follows its motion or its targets. Nothing changes then.
     ///
     /// # Panics
     /// If the body was removed.
@@ -52,10 +54,12 @@ impl Simulation {
         self.replace(place, moved)
     }
 
-    /// Gives a dynamic body these velocities, of its center of mass and angular, world axes, and wakes it.
+    /// Gives a dynamic body a velocity of its center of mass and an angular velocity, world axes, and wakes
+    /// it.
     ///
     /// # Errors
-    /// [`SimulationError::VelocityWithoutMotion`] of other bodies, [`SimulationError::TooLarge`]. Nothing changes then.
+    /// [`SimulationError::VelocityWithoutMotion`] for other bodies, [`SimulationError::TooLarge`]. Nothing
+    /// changes then.
     ///
     /// # Panics
     /// If the body was removed.
@@ -100,10 +104,10 @@ impl Simulation {
         Ok(())
     }
 
-    /// Another gravity from now on. All bodies are awake.
+    /// Sets the gravity from now on, and wakes all bodies.
     ///
     /// # Errors
-    /// What is not finite. Nothing changes then.
+    /// A gravity that is not finite. Nothing changes then.
     ///
     /// ```
     /// # use d2m_dynamics::{Simulation, SimulationOptions};
@@ -124,7 +128,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Restitution and friction of a body from now on. What touches it is awake.
+    /// Sets the restitution and friction of a body from now on, and wakes the bodies that touch it.
     ///
     /// # Errors
     /// A restitution outside [0, 1], a friction that is negative or not finite. Nothing changes then.
@@ -158,7 +162,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// How fast the velocities of a body fade from now on.
+    /// Sets how fast the velocities of a body fade from now on.
     ///
     /// # Errors
     /// Rates that are negative or not finite. Nothing changes then.
@@ -177,10 +181,11 @@ impl Simulation {
         Ok(())
     }
 
-    /// How fast the surface of a body runs from now on, mesh axes ([`Body::surface_velocity`](crate::Body::surface_velocity)).
+    /// Sets the velocity of a running surface from now on, mesh axes
+    /// ([`Body::surface_velocity`](crate::Body::surface_velocity)).
     ///
     /// # Errors
-    /// What is not finite. Nothing changes then.
+    /// A velocity that is not finite. Nothing changes then.
     ///
     /// # Panics
     /// If the body was removed.
@@ -216,7 +221,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Which bodies a body may meet from now on.
+    /// Sets which bodies a body may meet from now on.
     ///
     /// # Errors
     /// [`SimulationError::Intersecting`] if it intersects one that it would meet. Nothing changes then.
@@ -229,8 +234,8 @@ impl Simulation {
         self.replace(place, changed)
     }
 
-    /// Makes a body dynamic, static, kinematic or driven, where it is, or where its motion has it now. A dynamic one that was kinematic goes
-    /// on with the velocity of its last flight; joints stay.
+    /// Makes a body dynamic, static, kinematic or driven, at its present place, or at that of its motion. A
+    /// dynamic one that was kinematic goes on with the velocity of its last flight; joints stay.
     ///
     /// # Errors
     /// [`SimulationError::Intersecting`] if it intersects a body that it would meet; mass properties that are missing; a motion that does
@@ -258,7 +263,7 @@ impl Simulation {
         self.replace(place, changed)
     }
 
-    /// Another motion for a body, which is kinematic from now on: [`Self::set_kind`].
+    /// Gives a body another motion; it is kinematic from now on: [`Self::set_kind`].
     ///
     /// # Errors
     /// As [`Self::set_kind`].
@@ -269,13 +274,15 @@ impl Simulation {
         self.set_kind(body, Kind::Kinematic(motion))
     }
 
-    /// Where the mesh frame of a driven body ([`Kind::Driven`]) is to be at the end of the next step, however long that is: its center flies
-    /// straight there while it turns the short way round. It stands still there until it has another target.
+    /// Sets where the mesh frame of a driven body ([`Kind::Driven`]) will be at the end of the next step,
+    /// however long that is: its center flies straight there while it turns the short way round. It stands
+    /// still there until it has another target.
     ///
     /// # Errors
-    /// [`SimulationError::TargetTooFast`]: a turn of 3 radians or more, whose way round is not the one that is meant for certain.
-    /// [`SimulationError::BadBody`]: numbers that cannot be used, a body that is not driven. Nothing changes then. A step too short for
-    /// the way is [`StepError::TooFast`](crate::StepError::TooFast), and what is crushed on the way
+    /// [`SimulationError::TargetTooFast`]: a turn of 3 radians or more, for which it is not certain which way
+    /// round is meant. [`SimulationError::BadBody`]: numbers that cannot be used, a body that is not driven.
+    /// Nothing changes then. A step too short for the way is
+    /// [`StepError::TooFast`](crate::StepError::TooFast), and a body that is crushed on the way
     /// [`StepError::Crushed`](crate::StepError::Crushed), with the names.
     ///
     /// # Panics
@@ -305,7 +312,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// These two bodies may pass through each other from now on. A body and itself are no pair: nothing is kept of that.
+    /// Lets these two bodies pass through each other from now on. A body and itself are no pair: nothing
+    /// changes.
     ///
     /// # Panics
     /// If one of them was removed.
@@ -319,7 +327,7 @@ impl Simulation {
         self.drop_known(key.1);
     }
 
-    /// These two bodies meet again, after [`Self::ignore`] or a joint.
+    /// Lets these two bodies meet again, after [`Self::ignore`] or a joint.
     ///
     /// # Errors
     /// [`SimulationError::Intersecting`] if they intersect. Nothing changes then.
@@ -359,7 +367,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Restitution and friction of one pair, instead of what follows from its bodies; of a body and itself nothing is kept.
+    /// Sets the restitution and friction of one pair, in place of those that follow from its bodies. A body
+    /// and itself are no pair: nothing changes.
     ///
     /// # Errors
     /// A restitution outside [0, 1], a friction that is negative or not finite. Nothing changes then.
@@ -381,7 +390,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Restitution and friction of a pair: those of [`Self::set_pair`], else the greater restitution and the mean friction of the two bodies.
+    /// Restitution and friction of a pair: those of [`Self::set_pair`], else the greater restitution and the
+    /// mean friction of the two bodies.
     ///
     /// # Panics
     /// If one of them was removed.
@@ -389,7 +399,7 @@ impl Simulation {
         self.material(self.place(a), self.place(b))
     }
 
-    /// Two bodies by their places, the smaller one first.
+    /// The places of two bodies, the smaller one first.
     fn key(&self, a: BodyId, b: BodyId) -> (usize, usize) {
         let (a, b) = (self.place(a), self.place(b));
         (a.min(b), a.max(b))
@@ -402,7 +412,7 @@ fn check_material(restitution: f64, friction: f64) -> Result<(), SimulationError
     })
 }
 
-/// Where a pose of the mesh frame has the center and the axes of a body; none: numbers that are none.
+/// The center and the axes of a body whose mesh frame has this pose; none: the numbers are not finite.
 fn target(body: &RigidBody, pose: Pose) -> Option<Target> {
     let norm = pose.rotation.length();
     let is_turn = norm.is_finite() && norm > 0.0;

@@ -4,7 +4,8 @@ use crate::{BodyId, Simulation, SimulationError};
 use glam::DVec3;
 
 impl Simulation {
-    /// A force through the center of mass and a torque, world axes, over the next step; gravity comes on top. Wakes the body.
+    /// Sets the force through the center of mass and the torque on a body over the next step, world axes;
+    /// gravity is added. Wakes the body.
     ///
     /// ```
     /// # use std::sync::Arc;
@@ -126,7 +127,7 @@ impl Simulation {
         self.apply_impulse(body, impulse, arm.cross(impulse))
     }
 
-    /// The body is simulated again if it sleeps. It falls asleep again where it stays at rest.
+    /// Wakes a body if it sleeps: it is simulated again. It falls asleep again if it stays at rest.
     ///
     /// ```
     /// # use d2m_dynamics::{Body, Kind, Simulation, SimulationOptions};

@@ -1,4 +1,4 @@
-//! Questions about the bodies where they are now.
+//! Queries about the bodies where they are now.
 
 use crate::body::rigid_body::Role;
 use crate::shown::shown;
@@ -13,9 +13,10 @@ use d2m_world::{Body, FirstContact, Group, PlannedMotion, World, WorldError};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// The bodies of a simulation as they are now, at rest in a [`World`], whose queries state which bodies are near
-/// ([`World::proximities`], [`World::clearances_below`]), what something would meet on its way ([`World::first_contact_of`]). What does not meet
-/// in the simulation is ignored there, so sensors meet nothing. The simulation goes on without it.
+/// The bodies of a simulation as they are now, at rest in a [`World`]. Its queries state which bodies are
+/// near ([`World::proximities`], [`World::clearances_below`]) and what something would meet on its way
+/// ([`World::first_contact_of`]). Pairs that do not meet in the simulation are ignored there, so sensors meet
+/// nothing. The simulation goes on without it.
 ///
 /// ```
 /// use d2m_bvh::{MeshTree, ProximityOptions, QueryOptions};
@@ -42,11 +43,11 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Frozen {
     world: World,
-    /// By places of the world.
+    /// The bodies' names in the simulation, by places of the world.
     ids: Vec<BodyId>,
 }
 
-/// What a ray meets.
+/// The first body that a ray meets, if any.
 ///
 /// ```
 /// # use d2m_bvh::{MeshTree, QueryOptions};
@@ -66,33 +67,35 @@ pub struct Frozen {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RayAnswer {
-    /// Certified: nothing on its way.
+    /// Certified: the ray meets nothing on its way.
     Free,
-    /// Certified: nothing before `lo` of its way, and by `hi` it has come within the tolerance, and the minimum separation, of this body.
+    /// Certified: the ray meets nothing before `lo` of its way, and by `hi` it is within the tolerance, and
+    /// the minimum separation, of this body.
     Hit {
         /// The first body that it meets.
         body: BodyId,
-        /// How far along the way it is free, as a length.
+        /// The length of the way along which it meets nothing.
         lo: f64,
-        /// By how far along the way it has met the body.
+        /// The length of the way by which it has met the body.
         hi: f64,
         /// The point of the body's surface.
         point: DVec3,
         /// Outward unit normal of the body there.
         normal: DVec3,
     },
-    /// The budget ran out, or a search that may stop early stopped before it met anything. Certified: nothing before `free_until` of its way.
+    /// The budget ran out, or a search that may stop early stopped before it met anything. Certified: the ray
+    /// meets nothing before `free_until` of its way.
     Undecided {
-        /// How far along the way it is free, as a length.
+        /// The length of the way along which it meets nothing.
         free_until: f64,
     },
 }
 
-/// What does not move of itself meets nothing of its kind.
+/// Bodies that neither forces nor contacts move: two of them do not meet.
 const HELD: Group = Group(0);
-/// What forces and contacts move.
+/// Bodies that forces and contacts move.
 const MOVED: Group = Group(1);
-/// What others pass through.
+/// Bodies through which others pass.
 const SENSED: Group = Group(2);
 
 impl Simulation {
@@ -142,12 +145,12 @@ impl Simulation {
 }
 
 impl Frozen {
-    /// The world, at any time of which the bodies are where they were.
+    /// The world; at any of its times the bodies are where they were.
     pub const fn world(&self) -> &World {
         &self.world
     }
 
-    /// The name in the simulation of a body of the world.
+    /// The simulation's name of a body of the world.
     ///
     /// # Panics
     /// If the name is of another world, with more bodies.
@@ -155,14 +158,15 @@ impl Frozen {
         self.ids[body.index()]
     }
 
-    /// The name in the world of a body of the simulation; none if it was not there.
+    /// The world's name of a body of the simulation; none if it was not there.
     pub fn body(&self, body: BodyId) -> Option<d2m_world::BodyId> {
         let place = self.ids.binary_search(&body).ok()?;
         self.world.ids().nth(place)
     }
 
-    /// What a point meets first on a straight way from `origin` to `origin + way`: [`World::first_contact_of`] of a body that is a point,
-    /// in any group. It passes through sensors, as bodies do.
+    /// The first body that a point meets on a straight way from `origin` to `origin + way`:
+    /// [`World::first_contact_of`] of a body that is a point, in any group. It passes through sensors, as
+    /// bodies do.
     ///
     /// # Errors
     /// Numbers that are not finite.
@@ -171,10 +175,10 @@ impl Frozen {
         let motion = ConstantTwist::try_new(origin, glam::DQuat::IDENTITY, way, DVec3::ZERO)
             .map_err(|_| RayError::BadRay { origin, way })?;
         let point = Arc::new(MeshTree::new(TriMesh::point(DVec3::ZERO)?));
-        // It meets what a body that moves would meet, in any group.
+        // It meets what a moving body would meet, in any group.
         let body = world.add(Body::new(point, motion).with_group(MOVED));
         let plan = [PlannedMotion { body, motion: Arc::new(motion) }];
-        // A part of the way, as a length that is rounded outward.
+        // The length of a part of the way, rounded outward.
         let length = IntervalVec3::point(way).norm();
         let along = |part: f64| length * Interval::point(part);
         Ok(match world.first_contact_of(&plan, Window::UNIT)? {
@@ -182,12 +186,12 @@ impl Frozen {
             FirstContact::Undecided { clear_until, .. } => {
                 RayAnswer::Undecided { free_until: along(clear_until).lo().max(0.0) }
             }
-            // What stops early may be near nothing, by any time.
+            // A search that stopped early may be near nothing, at any time.
             FirstContact::Contact { contact, .. } if contact.evidence == Evidence::Early => {
                 RayAnswer::Undecided { free_until: along(contact.time_lo).lo().max(0.0) }
             }
             FirstContact::Contact { a, contact, .. } => {
-                // The point was added last, so it is the second one.
+                // The point was added last, so it is the second body.
                 let Contact { time_lo, time_hi, point_a, normal, .. } = contact;
                 let (lo, hi) = (along(time_lo).lo().max(0.0), along(time_hi).hi());
                 RayAnswer::Hit { body: self.id(a), lo, hi, point: point_a, normal }
@@ -195,7 +199,8 @@ impl Frozen {
         })
     }
 
-    /// The distance of two bodies, whether they are ignored or not: [`d2m_bvh::distance`]. It is zero where one is filled and holds the other.
+    /// The distance of two bodies, even of an ignored pair: [`d2m_bvh::distance`]. It is zero where one is
+    /// filled and holds the other.
     ///
     /// # Errors
     /// A pair that cannot be queried.
@@ -238,7 +243,7 @@ pub enum RayError {
         /// Its way.
         way: DVec3,
     },
-    /// A point that is none.
+    /// The point of the ray could not be made.
     #[error(transparent)]
     Mesh(#[from] MeshError),
     /// A pair that cannot be queried.

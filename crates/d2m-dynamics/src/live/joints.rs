@@ -1,10 +1,12 @@
-//! The joints of a simulation: added, taken out, driven and read. What they ask of a solve: [`crate::joint::rows`].
+//! The joints of a simulation: added, removed, driven and read. Their rows in the solver:
+//! [`crate::joint::rows`].
 
 use crate::joint::rows::Joined;
 use crate::{Joint, Motor, Simulation, SimulationError};
 
 impl Simulation {
-    /// Joins two bodies, or one with the world, where they are; the pair is ignored unless the joint says otherwise. The number of the joint.
+    /// Joins two bodies, or one with the world, where they are. The pair is ignored unless the joint says
+    /// otherwise. Returns the number of the joint.
     ///
     /// ```
     /// use d2m_bvh::MeshTree;
@@ -42,8 +44,8 @@ impl Simulation {
         Ok(self.joints.len() - 1)
     }
 
-    /// Takes a joint out; its number never means another one. Its bodies go on passing through each other where they did: at a joint they
-    /// mostly overlap. [`Self::heed`] has them meet again.
+    /// Removes a joint; its number never means another one. Its bodies go on passing through each other if
+    /// they did, since they mostly overlap at a joint; [`Self::heed`] has them meet again.
     ///
     /// # Panics
     /// If there is no such joint, or it was taken out.
@@ -71,12 +73,12 @@ impl Simulation {
         }
     }
 
-    /// A joint, if it was not taken out.
+    /// A joint, if it was not removed.
     pub fn joint(&self, joint: usize) -> Option<&Joint> {
         self.joints.get(joint).filter(|joined| !joined.is_gone()).map(|joined| &joined.joint)
     }
 
-    /// Another motor of a joint, or none: so a robot is driven from step to step. Wakes its bodies.
+    /// Sets the motor of a joint, or none; a robot is driven by this from step to step. Wakes its bodies.
     ///
     /// # Errors
     /// [`SimulationError::BadJoint`]: numbers that cannot be used. Nothing changes then.
@@ -100,7 +102,8 @@ impl Simulation {
         joined
     }
 
-    /// The value of a joint: how far b has turned about the axis, or moved along it, against a; zero of other kinds.
+    /// The value of a joint: how far b has turned about the axis, or moved along it, against a; zero for
+    /// other kinds.
     ///
     /// # Panics
     /// If there is no such joint, or it was taken out.

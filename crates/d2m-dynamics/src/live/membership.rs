@@ -1,4 +1,4 @@
-//! Bodies come, change and go; the one function that forgets what was proven of them.
+//! Adding, replacing and removing bodies, and the one function that forgets what was proven of them.
 
 use crate::body::rigid_body::{RigidBody, Role};
 use crate::pairs::known::Pair;
@@ -8,16 +8,17 @@ use d2m_mesh::Faces;
 use std::sync::Arc;
 
 impl Simulation {
-    /// Adds a body. A body that is added later appears in the segments from the next step on. That it intersects no other one is checked by
-    /// the next step, so that pairs may yet be ignored; [`Self::add_checked`] checks at once.
+    /// Adds a body. If the simulation runs already, the body appears in the segments from the next step on.
+    /// The next step checks that it intersects no other one, so that pairs may be ignored until then;
+    /// [`Self::add_checked`] checks at once.
     ///
     /// # Errors
-    /// Numbers that cannot be used, mass properties that are missing. Nothing changes then.
+    /// Numbers that cannot be used; missing mass properties. Nothing changes then.
     pub fn add(&mut self, body: &Body) -> Result<BodyId, SimulationError> {
         self.add_at(body, None)
     }
 
-    /// At this place, or the first one that is free.
+    /// Adds a body at this place, or the first free one.
     pub(crate) fn add_at(&mut self, body: &Body, place: Option<usize>) -> Result<BodyId, SimulationError> {
         let same = self.bodies.iter().find(|other| Arc::ptr_eq(&other.tree, &body.tree));
         let faces =
@@ -29,8 +30,9 @@ impl Simulation {
     /// As [`Self::add`], but a body that intersects another one that it meets is refused at once.
     ///
     /// # Errors
-    /// Those of [`Self::add`], and [`SimulationError::Intersecting`], which says with what, about how deep, and where; bodies that touch up
-    /// to rounding are accepted, and parted by the next step. Nothing changes then.
+    /// Those of [`Self::add`], and [`SimulationError::Intersecting`], which says with which body, about how
+    /// deep, and where. Bodies that touch up to rounding are accepted, and parted by the next step. Nothing
+    /// changes then.
     ///
     /// ```
     /// # use std::sync::Arc;
@@ -56,15 +58,15 @@ impl Simulation {
         match self.check_place(id.index()) {
             Ok(()) => Ok(id),
             Err(error) => {
-                // Nobody has heard of its name yet.
+                // Nobody has got its name yet.
                 self.clear_out(id.index());
                 Err(error)
             }
         }
     }
 
-    /// Takes a body out, with its joints; false if it is not there any more. What rested on it, or hung on it, is awake. Its name never
-    /// means another body.
+    /// Removes a body, with its joints; false if it is not there any more. Bodies that rested on it, or hung
+    /// on it, are awake. Its name never means another body.
     ///
     /// ```
     /// # use std::sync::Arc;
@@ -99,7 +101,7 @@ impl Simulation {
         self.bodies.get(body.index()).is_some_and(|own| own.role.is_named() && own.id == body)
     }
 
-    /// The place that the next body to be added is given, its [`BodyId::index`]: the first one that is free.
+    /// The place that the next added body gets, its [`BodyId::index`]: the first free one.
     ///
     /// ```
     /// # use std::sync::Arc;
@@ -129,11 +131,11 @@ impl Simulation {
         body.index()
     }
 
-    /// Gives a body the first place that is free, or the one that is wanted.
+    /// Gives a body the first free place, or the wanted one if it is free.
     fn settle_in(&mut self, body: RigidBody, wanted: Option<usize>) -> BodyId {
         let is_free = |place: &usize| self.bodies.get(*place).is_none_or(|body| body.role == Role::Vacant);
         let place = wanted.filter(is_free).unwrap_or_else(|| self.next_index());
-        // Places before it that were given up.
+        // Places before it that were given up come back.
         while self.bodies.len() < place {
             let mut vacant = body.clone();
             vacant.vacate();
@@ -143,7 +145,7 @@ impl Simulation {
             self.generations.resize(place + 1, 0);
         }
         let id = BodyId { place: place as u32, generation: self.generations[place] };
-        // No flight of the place has had this number before.
+        // The number of flights goes on, so that no flight of an earlier body of the place had the same one.
         let version = self.bodies.get(place).map_or(0, |before| before.version + 1);
         let body = RigidBody { id, version, ..body };
         if place < self.bodies.len() {
@@ -156,7 +158,7 @@ impl Simulation {
         id
     }
 
-    /// Nobody is at this place any more, and nothing is said of it. Free places at the end are given up.
+    /// Frees a place and forgets all about its body. Free places at the end are given up.
     pub(crate) fn clear_out(&mut self, place: usize) {
         self.drop_known(place);
         for joined in self.joints.iter_mut().filter(|joined| joined.has(place)) {
@@ -172,9 +174,10 @@ impl Simulation {
         }
     }
 
-    /// **Every change from outside goes through here**: of where a body is, of what it is, of what it may meet. What was proven of its
-    /// pairs, what was measured of them, the box about its flight and its neighbors are forgotten, its flight ends, and what rests on it or is
-    /// joined to it is awake: its next flight is proven from nothing.
+    /// **Every change from outside goes through here**: of a body's place, of its properties, of the bodies
+    /// that it may meet. Everything that was proven or measured of its pairs, the box about its flight and
+    /// its neighbors are forgotten. Its flight ends, and bodies that rest on it or are joined to it wake: its
+    /// next flight is proven from nothing.
     pub(crate) fn drop_known(&mut self, place: usize) {
         let touches = |pair: &Pair| !pair.contacts.is_empty();
         let near = self.pairs.iter().filter(|((a, b), pair)| (*a == place || *b == place) && touches(pair));
@@ -189,7 +192,7 @@ impl Simulation {
         self.bodies[place].renew(self.time);
     }
 
-    /// Another body at a place, if it intersects none that it meets; else everything is as before.
+    /// Puts another body at a place, if it intersects none that it meets; else everything is as before.
     pub(crate) fn replace(&mut self, place: usize, body: RigidBody) -> Result<(), SimulationError> {
         let before = core::mem::replace(&mut self.bodies[place], body);
         if let Err(error) = self.check_place(place) {
@@ -205,7 +208,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// What sleeps is simulated again.
+    /// Wakes the body of a place if it sleeps, and counts its quiet time anew.
     pub(crate) fn wake_place(&mut self, place: usize) {
         let body = &mut self.bodies[place];
         body.wake(self.time);

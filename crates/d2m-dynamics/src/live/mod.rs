@@ -1,4 +1,4 @@
-//! What may be asked and changed between two steps.
+//! Changes and queries between two steps.
 pub(crate) mod changes;
 pub(crate) mod forces;
 pub(crate) mod frozen;

@@ -12,11 +12,13 @@ use d2m_mesh::Faces;
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
-/// A target turns a body by less than this in a step, so that the shortest way round is the one meant; below π, with room for rounding.
+/// A target turns a body by less than this in a step, so that the shortest way round is the one meant; below
+/// π, with room for rounding.
 const MOST_TURN: f64 = 3.0;
 
 impl RigidBody {
-    /// Somewhere else, at rest until its next flight, with the velocities that it has. None: numbers that are too large.
+    /// The body somewhere else, at rest until its next flight, with its velocities. None: numbers that are
+    /// too large.
     pub(crate) fn moved(&self, position: DVec3, orientation: DQuat, time: f64) -> Option<Self> {
         let flight = rest(self.center, position, orientation, time)?;
         let angular = self.velocity().angular;
@@ -27,7 +29,7 @@ impl RigidBody {
         Some(moved)
     }
 
-    /// May the body be sent there in a step from a time?
+    /// Checks that the body may be sent there in a step from a time.
     pub(crate) fn check_target(&self, target: Target, time: f64) -> Result<(), SimulationError> {
         let is_driven = matches!(self.kind, Kind::Driven);
         if !is_driven || self.moved(target.position, target.orientation, time).is_none() {
@@ -46,14 +48,15 @@ impl RigidBody {
         unusable_of(&self.name, "target", value)
     }
 
-    /// Momenta of these velocities, of a dynamic body.
+    /// Sets the momenta of a dynamic body to those of these velocities.
     pub(crate) fn set_velocity(&mut self, velocity: Velocity) {
         let r = DMat3::from_quat(self.orientation);
         self.momentum = velocity.linear * self.mass;
         self.angular_momentum = r * (self.inertia * (r.transpose() * velocity.angular));
     }
 
-    /// The same body with another kind, where it is. What was kinematic goes on with the velocity of its flight.
+    /// The same body with another kind, at its place. A kinematic body goes on with the velocity of its
+    /// flight.
     pub(crate) fn with_kind(&self, kind: Kind, time: f64) -> Result<Self, SimulationError> {
         let velocity = match kind {
             Kind::Dynamic if self.is_dynamic() => self.velocity(),
@@ -84,7 +87,7 @@ impl RigidBody {
         Ok(Self { id, role, force, torque, version, ..made })
     }
 
-    /// Begins anew from where it is: nothing of its flight counts any more.
+    /// Starts anew at the present place: the last flight is forgotten.
     pub(crate) fn renew(&mut self, time: f64) {
         self.flight = self
             .flight
@@ -101,7 +104,7 @@ impl RigidBody {
         (self.gained, self.quiet) = (0.0, Quiet::default());
     }
 
-    /// Nobody has the place any more; the mesh is let go.
+    /// Frees the place of the body, and lets go of its mesh.
     pub(crate) fn vacate(&mut self) {
         if let Ok(nothing) = TriMesh::point(DVec3::ZERO) {
             self.faces = Arc::new(Faces::new(&nothing));

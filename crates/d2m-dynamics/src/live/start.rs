@@ -1,4 +1,4 @@
-//! Where bodies are when they are added: apart, touching, or in each other.
+//! Checks of bodies that are added: apart, touching, or intersecting.
 
 use crate::body::rigid_body::RigidBody;
 use crate::pairs::clearance::are_spheres_apart;
@@ -12,41 +12,43 @@ use d2m_world::{Aabb, BoxTree};
 use glam::{DMat3, DVec3};
 use std::collections::BTreeSet;
 
-/// Bodies that touch are moved this far apart before anything flies, of their size or their distance from the origin if that is more:
-/// 2⁻³⁶, of which a query still resolves a half with a tolerance of a sixteenth of it, 2⁻⁴¹.
+/// Bodies that touch are moved this far apart before anything flies, as a part of their size, or of their
+/// distance from the origin if that is larger: 2⁻³⁶. A query still resolves a half of it with a tolerance of
+/// a sixteenth of that, 2⁻⁴¹.
 const APART: f64 = 1.0 / (1u64 << 36) as f64;
-/// The part of that from which on bodies count as apart: nearer ones are parted as those that touch are, since no query resolves a half of
-/// what they have.
+/// The part of that from which on bodies count as apart. Nearer ones are parted as touching ones are, since
+/// no query resolves a half of their distance.
 const STILL_APART: f64 = 0.5;
-/// The part of the gap that pairs keep at least, 2⁻¹⁶: those that start closer part to that, since solutions may be off by a hundred-thousandth of a
-/// gap a step, and where the last of what a pair keeps is used up friction gives way.
+/// The part of the gap that pairs keep at least, 2⁻¹⁶: pairs that start closer part to that. Solutions may be
+/// off by a hundred-thousandth of a gap a step, and where a pair has used up the last of its distance
+/// friction gives way.
 const LEAST_KEPT: f64 = 1.0 / (1u64 << 16) as f64;
-/// How far a body is moved on trial, of the same, to see where it can part: 2⁻²⁰.
+/// How far a body is moved on trial, relative to the same size, to see where it can part: 2⁻²⁰.
 const TRIAL: f64 = 1.0 / (1u64 << 20) as f64;
-/// Overlaps up to this part of it are the rounding of poses, and count as touching: 2⁻⁴⁰.
+/// Overlaps up to this part of the same size are the rounding of poses, and count as touching: 2⁻⁴⁰.
 const ROUNDING: f64 = 1.0 / (1u64 << 40) as f64;
-/// Rounds in which bodies that touch are parted: each may push others together.
+/// Rounds in which touching bodies are parted: each may push others together.
 const MOST_ROUNDS: u32 = 4;
 
-/// How two bodies are to each other before anything flies.
+/// How two bodies lie before anything flies.
 enum Placed {
-    /// Proven apart; by less than the gap, where it is said.
+    /// Proven apart; with the distance, if it is less than the gap.
     Apart(Option<f64>),
     Touching(Touch),
 }
 
-/// Two bodies that share points, of which one could be moved away.
+/// Two bodies that share points.
 struct Touch {
     pair: (usize, usize),
-    /// Where they touch, with how far apart they are along the normals.
+    /// The contacts where they touch, with their distances along the normals.
     contacts: Vec<ContactPoint>,
     /// A point that they share, about.
     point: DVec3,
 }
 
 impl Simulation {
-    /// Bodies added, or changed from outside, since the last step must not intersect any other. Those that touch are parted by a rounding,
-    /// from where they move on to the gap.
+    /// Checks that bodies which were added or changed from outside since the last step intersect no other.
+    /// Touching ones are parted by a rounding, and move on to the gap from there.
     pub(crate) fn check_start(&mut self) -> Result<(), StepError> {
         for round in 0.. {
             let mut touching = Vec::new();
@@ -77,8 +79,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Bodies that something which nothing moves was put against give way: they count as changed from outside, and are checked again. False: each
-    /// pair has a body that may be moved already.
+    /// Lets bodies give way against which a body was put that may not be moved: they count as changed from
+    /// outside, and are checked again. False: each pair has a body already that may be moved.
     fn is_given_way(&mut self, touching: &[Touch]) -> bool {
         let may_move = |i: usize| self.bodies[i].is_dynamic() && self.unchecked.contains(&i);
         let stuck = touching
@@ -94,7 +96,7 @@ impl Simulation {
         !moved.is_empty()
     }
 
-    /// The pairs with a body that is not checked yet and that may be closer than the gap, in the order of the second body.
+    /// The pairs with an unchecked body that may be closer than the gap, in the order of the second body.
     fn near_unchecked(&self) -> Vec<(usize, usize)> {
         if self.unchecked.is_empty() {
             return Vec::new();
@@ -118,10 +120,10 @@ impl Simulation {
         near.into_iter().map(|(b, a)| (a, b)).collect()
     }
 
-    /// Does this body intersect no other? It may touch them.
+    /// Checks that this body intersects no other. It may touch them.
     ///
     /// # Errors
-    /// [`SimulationError::Intersecting`], with the one that it intersects.
+    /// [`SimulationError::Intersecting`], with the body that it intersects.
     pub(crate) fn check_place(&self, place: usize) -> Result<(), SimulationError> {
         let (gap, now) = (self.options.gap, self.time);
         let body = &self.bodies[place];
@@ -137,7 +139,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Is no pair of checked bodies proven to be anything but apart? What is not checked yet is so by the next step.
+    /// Checks that no two checked bodies intersect. The next step checks the others.
     ///
     /// # Errors
     /// [`SimulationError::Intersecting`].
@@ -146,7 +148,8 @@ impl Simulation {
         self.near_pairs(is_checked).into_iter().try_for_each(|(a, b)| self.placed(a, b).map(|_| ()))
     }
 
-    /// Pairs that start closer than the gap keep what they have, or [`LEAST_KEPT`]; those that touch are returned.
+    /// Makes the pair: one that starts closer than the gap keeps its distance, or [`LEAST_KEPT`]. Returns it
+    /// if it touches.
     fn admit_placed(&mut self, (a, b): (usize, usize), placed: Placed) -> Option<Touch> {
         match placed {
             Placed::Apart(within) => {
@@ -166,14 +169,14 @@ impl Simulation {
         }
     }
 
-    /// How two bodies are to each other.
+    /// Finds how two bodies lie.
     fn placed(&self, a: usize, b: usize) -> Result<Placed, SimulationError> {
         let gap = self.options.gap;
         let (one, two) = (&self.bodies[a], &self.bodies[b]);
         let poses = [one, two].map(|body| body.pose_at(self.time));
         let found = distance_of([one, two], poses, gap, &mut PairCache::new());
         let found = found.map_err(|error| one.query_error(two, error))?;
-        // Of round bodies that touch rounding decides whether they are apart.
+        // For round bodies that touch, rounding decides whether they are apart.
         let rounded = ROUNDING * (one.rounding + two.rounding);
         let is_apart = |found: &Distance| found.state == StartState::Apart && found.lower >= rounded;
         let apart = found.as_ref().filter(|found| is_apart(found)).map(|found| found.lower);
@@ -201,7 +204,7 @@ impl Simulation {
         SimulationError::Intersecting { a, b, depth, point }
     }
 
-    /// The distance of two bodies when the second one is moved so; none: not proven apart.
+    /// The distance of two bodies with the second one moved by this; none: they are not proven apart.
     fn distance_after(&self, a: usize, b: usize, moved: DVec3) -> Option<f64> {
         let (one, two) = (&self.bodies[a], &self.bodies[b]);
         let mut pose = two.pose_at(self.time);
@@ -217,7 +220,7 @@ impl Simulation {
     fn touch_contacts(&self, a: usize, b: usize) -> Option<Vec<ContactPoint>> {
         let bodies = [&self.bodies[a], &self.bodies[b]];
         let trial = TRIAL * size(bodies);
-        // Where it comes furthest away.
+        // The direction in which it comes furthest away.
         let away = |way: &DVec3| self.distance_after(a, b, *way * trial).map(|distance| (distance, *way));
         let (_, way) = ways(bodies).iter().filter_map(away).reduce(|x, y| if y.0 > x.0 { y } else { x })?;
         let mut moved = bodies[1].clone();
@@ -236,7 +239,7 @@ impl Simulation {
         is_touch.then_some(contacts)
     }
 
-    /// About how far the second body would have to be moved to come free, along the best of some directions.
+    /// About how far the second body would have to be moved to be free, along the best of some directions.
     fn depth(&self, a: usize, b: usize) -> f64 {
         let bodies = [&self.bodies[a], &self.bodies[b]];
         let most = bodies[0].radius + bodies[1].radius;
@@ -256,7 +259,8 @@ impl Simulation {
         ways(bodies).iter().map(along).fold(f64::INFINITY, f64::min)
     }
 
-    /// Moves unchecked bodies by the least that parts those that touch: the solution of contacts, with ways for velocities.
+    /// Moves unchecked bodies by the least that parts touching ones: the solution of their contacts, with
+    /// displacements in place of velocities.
     fn part(&mut self, touching: &[Touch]) {
         let contacts: Vec<ContactPoint> =
             touching.iter().flat_map(|touch| touch.contacts.iter().copied()).collect();
@@ -289,7 +293,8 @@ impl Simulation {
     }
 }
 
-/// Directions in which the second body may come free of the first one: from center to center, the axes, and halfway between them.
+/// Directions in which the second body may come free of the first one: from center to center, the axes, and
+/// halfway between them.
 fn ways([a, b]: [&RigidBody; 2]) -> Vec<DVec3> {
     let mut ways = vec![(b.position - a.position).normalize_or_zero()];
     let steps = [0.0, 1.0, -1.0];
