@@ -1,4 +1,4 @@
-//! What a snapshot keeps of a body.
+//! The state of a body in a snapshot.
 
 use crate::body::description::{Damping, Groups, Kind};
 use crate::body::rigid_body::{RigidBody, Role, Target};
@@ -21,7 +21,7 @@ enum KindState {
     Driven,
 }
 
-/// What proofs about a body are about, and the motion that it follows.
+/// What proofs about a body depend on, and the motion that it follows.
 #[derive(Clone)]
 pub(crate) struct HeldBody {
     tree: Arc<MeshTree>,
@@ -52,9 +52,9 @@ pub(crate) struct BodyState {
     angular_momentum: DVec3,
     force: DVec3,
     torque: DVec3,
-    /// As it was flown: where it began, and when.
+    /// As it was flown: from its start, and the time of that.
     pub(crate) flight: ConstantTwist,
-    /// None: without end.
+    /// None: the flight has no end.
     horizon: Option<f64>,
     version: u64,
     has_flown: bool,
@@ -106,7 +106,7 @@ impl BodyState {
         }
     }
 
-    /// Is this the body that the state was taken of?
+    /// Was the state taken of this body?
     pub(crate) fn is_of(&self, body: &RigidBody) -> bool {
         self.held.0.as_ref().is_some_and(|held| {
             Arc::ptr_eq(&held.tree, &body.tree)
@@ -118,7 +118,7 @@ impl BodyState {
     /// The body in this state.
     ///
     /// # Errors
-    /// Numbers that cannot be used, as of a body that is added or changed.
+    /// Numbers that cannot be used, as for a body that is added or changed.
     pub(crate) fn restored(&self, own: &RigidBody, now: f64) -> Result<RigidBody, SimulationError> {
         let bad = |name: &'static str, value: String| unusable_of(&own.name, name, value);
         self.check_numbers(own, now)?;
@@ -134,7 +134,7 @@ impl BodyState {
         let mut body = own.clone();
         let is_other = core::mem::discriminant(&kind) != core::mem::discriminant(&own.kind);
         if is_other {
-            // What a motion of another time would place is placed by the snapshot.
+            // A motion would place the body at another time; the snapshot places it.
             let rebuilt = if matches!(kind, Kind::Kinematic(_)) { Kind::Driven } else { kind.clone() };
             body = own.with_kind(rebuilt, self.time)?;
         }
@@ -151,7 +151,8 @@ impl BodyState {
         (body.asleep, body.quiet) = (self.asleep, self.quiet);
         body.flight = self.flight;
         if !self.is_where_it_flies(&body, now) {
-            // It flies from where it is: what is checked is what the next step begins with. What no step moves stands still.
+            // It flies from its present place, where the next step begins and which is checked. A body that
+            // no step moves stands still.
             let [linear, angular] = if body.is_awake() {
                 [self.flight.linear_velocity(), self.flight.angular_velocity()]
             } else {
@@ -173,8 +174,9 @@ impl BodyState {
         Ok(body)
     }
 
-    /// Has the flight the body where it is, bit by bit? Then it is kept as it was flown: a pose that is computed from another time has other
-    /// last bits. What no step moves has to stand still there.
+    /// Does the flight lead to the body's place, bit by bit? Then it is kept as it was flown: a pose computed
+    /// from another time has other last bits. The flight of a body that no step moves has to be at rest
+    /// there.
     fn is_where_it_flies(&self, body: &RigidBody, now: f64) -> bool {
         let pose = self.flight.pose_and_twist(now).0;
         let is_there = (pose.translation, pose.rotation) == (self.position, self.orientation);
@@ -215,7 +217,7 @@ impl BodyState {
         if !self.gained.is_finite() {
             return bad("account of energy", shown([self.gained]));
         }
-        // Flights are counted up.
+        // The number is counted up with each flight.
         if self.version > u64::MAX / 2 {
             return bad("number of flights", self.version.to_string());
         }
@@ -232,7 +234,7 @@ mod tests {
 
     type Change = &'static dyn Fn(&mut BodyState);
 
-    /// Greater than any body has it.
+    /// Larger than any body may have.
     const HUGE: DVec3 = DVec3::new(1e160, 0.0, 0.0);
 
     /// A cube that has flown for a while.
@@ -245,7 +247,7 @@ mod tests {
         body
     }
 
-    /// Its pose of a time between has the same bits: of a flight that begins later they differ.
+    /// Its poses at times between have the same bits; those of a flight that begins later would differ.
     #[test]
     fn flights_are_kept_as_they_were_flown() {
         let body = flown();

@@ -1,6 +1,7 @@
-//! What a snapshot holds besides its numbers.
+//! What a snapshot holds besides numbers.
 
-/// What proofs are about, or follow from: it is held, and not written. What is read has none of it.
+/// What proofs depend on, or follow from. It is held in memory, and not written: a snapshot that is read has
+/// none of it.
 #[derive(Clone)]
 pub(crate) struct Held<T>(pub(crate) Option<T>);
 
@@ -23,10 +24,10 @@ impl<T> core::fmt::Debug for Held<T> {
     }
 }
 
-/// Where the numbers of a state are from.
+/// The source of the numbers of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
-    /// The same bodies: what was proven of them is proven.
+    /// The same bodies: proofs about them still hold.
     Held,
     /// A file, or other bodies: nothing is proven.
     Read,

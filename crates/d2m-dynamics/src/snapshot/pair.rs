@@ -1,4 +1,4 @@
-//! What a snapshot keeps of a pair of bodies: all that the next step reads of it.
+//! The state of a pair of bodies in a snapshot: all that the next step reads of it.
 
 use crate::SimulationError;
 use crate::body::rigid_body::{RigidBody, Target};
@@ -13,7 +13,8 @@ use d2m_feature::FeaturePair;
 use d2m_motion::Pose;
 use glam::DVec3;
 
-/// Also proofs that have failed count: by them a query begins where the last proof has ended, and so has other last bits.
+/// Failed proofs count, too: a query begins where the last proof has ended, and has other last bits
+/// otherwise.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PairState {
@@ -78,7 +79,7 @@ impl PairState {
         }
     }
 
-    /// The pair in this state. A distance that nobody has proven of these bodies is computed again.
+    /// The pair in this state. A distance that was not proven for these bodies is computed again.
     pub(crate) fn restored(&self, bodies: [&RigidBody; 2], source: Source) -> Result<Pair, SimulationError> {
         if let Some((name, value)) = self.fault() {
             let [a, b] = bodies.map(|body| body.name.to_string());
@@ -119,7 +120,7 @@ impl PairState {
         })
     }
 
-    /// A number that cannot be used, and its name.
+    /// The name of a number that cannot be used, and the number.
     fn fault(&self) -> Option<(&'static str, String)> {
         let is_way = |x: &f64| x.is_finite() && *x > 0.0;
         let is_place = |place: &Target| is_small(place.position) && is_turn(place.orientation);
@@ -218,7 +219,7 @@ mod tests {
 
     type Change = &'static dyn Fn(&mut PairState);
 
-    /// Two cubes that are a gap apart, and what is known of them.
+    /// Two cubes that are a gap apart, and what is known of the pair.
     fn near() -> (Vec<RigidBody>, Pair) {
         let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()));
         let faces = Arc::new(Faces::new(tree.mesh()));
@@ -234,7 +235,7 @@ mod tests {
         (bodies, pair)
     }
 
-    /// What is read is no proof: a distance is computed again, to the same bits.
+    /// A distance that is read is no proof: it is computed again, to the same bits.
     #[test]
     fn distances_of_a_file_prove_nothing() {
         let (bodies, pair) = near();

@@ -1,4 +1,4 @@
-//! The state of a simulation apart from its meshes, to be kept and restored.
+//! The state of a simulation without its meshes, to be kept and restored.
 
 use crate::body::rigid_body::{RigidBody, Role};
 use crate::joint::rows::Joined;
@@ -11,13 +11,14 @@ use crate::{Simulation, SimulationError, SimulationOptions, TouchEvent};
 use d2m_contact::Material;
 use std::collections::BTreeSet;
 
-/// Everything that changes in a simulation: poses, momenta, flights, impulses of resting contacts, who sleeps and who touches, joints, kinds,
-/// materials, groups, which pairs are ignored.
+/// Everything that changes in a simulation: poses, momenta, flights, impulses of resting contacts, which
+/// bodies sleep and which touch, joints, kinds, materials, groups, ignored pairs.
 ///
-/// Promise: [`Simulation::restore`] followed by the same steps gives the same bits. Meshes and masses are not in it: it belongs to a
-/// simulation that has its bodies, and perhaps others. Of what a file says nothing counts as proven: it is computed again, to the same bits as
-/// long as no query meets its budget ([`SimulationOptions::node_tests`]). With the feature `serde` it can be written in any format; motions of kinematic bodies
-/// are not written, those of the simulation go on.
+/// Promise: [`Simulation::restore`] followed by the same steps gives the same bits. Meshes and masses are not
+/// in it: it belongs to a simulation that has its bodies, and perhaps others. Nothing that is read from a
+/// file counts as proven: it is computed again, to the same bits as long as no query meets its budget
+/// ([`SimulationOptions::node_tests`]). With the feature `serde` it can be written in any format. Motions of
+/// kinematic bodies are not written; those of the simulation go on.
 ///
 /// ```
 /// use d2m_bvh::MeshTree;
@@ -43,7 +44,7 @@ pub struct Snapshot {
     steps: u64,
     greatest_energy: f64,
     world: Option<usize>,
-    /// By ascending places.
+    /// In the order of their places.
     bodies: Vec<BodyState>,
     pairs: Vec<PairState>,
     joints: Vec<Joined>,
@@ -64,13 +65,13 @@ struct PairMaterial {
 }
 
 impl Snapshot {
-    /// What it keeps of the body of a place.
+    /// The state of the body at a place.
     fn state(&self, place: usize) -> Option<&BodyState> {
         let found = self.bodies.binary_search_by_key(&place, |state: &BodyState| state.id.index());
         found.ok().map(|k| &self.bodies[k])
     }
 
-    /// Is this body of a place the one that it keeps?
+    /// Is the state of this body, at a place, in it?
     fn has(&self, body: &RigidBody, place: usize) -> bool {
         let is_same = |state: &BodyState| body.role.is_named() && body.id == state.id;
         if self.world == Some(place) {
@@ -80,7 +81,8 @@ impl Snapshot {
         }
     }
 
-    /// The settings and what concerns no single body; each body once, in the order of their places.
+    /// Checks the settings and what concerns no single body; also that each body is there once, in the order
+    /// of places.
     fn check(&self) -> Result<(), SimulationError> {
         self.options.check()?;
         let bad = |name: &'static str, value: f64, wanted: &'static str| {
@@ -132,7 +134,8 @@ impl Simulation {
         }
     }
 
-    /// Takes out what a snapshot does not have: bodies that were added since, and the world where it has another place, or none.
+    /// Removes what the snapshot does not have: bodies that were added since, and the world if it has another
+    /// place there, or none.
     fn make_way(&mut self, snapshot: &Snapshot) {
         for place in (0..self.bodies.len()).rev() {
             // Free places at the end go with the last one that is cleared.
@@ -150,10 +153,12 @@ impl Simulation {
         }
     }
 
-    /// Goes back to a state of this simulation, or of one with the same bodies. Bodies and joints that were added since are gone, joints that
-    /// were taken out are there again; names of bodies that are gone never mean others. Segments begin anew there.
+    /// Goes back to a state of this simulation, or of one with the same bodies. Bodies and joints that were
+    /// added since are gone, joints that were removed are there again; names of bodies that are gone never
+    /// mean others. Segments begin anew there.
     ///
-    /// A state of other bodies than the snapshot was taken of, or one that was written and read, is checked for intersections.
+    /// A state with other bodies than those of which it was taken, or one that was written and read, is
+    /// checked for intersections.
     ///
     /// ```
     /// # use std::sync::Arc;
@@ -171,9 +176,10 @@ impl Simulation {
     /// ```
     ///
     /// # Errors
-    /// A body of the snapshot that was removed since; settings or numbers that cannot be used, by the names of body and number
-    /// ([`SimulationError::BadBody`], [`SimulationError::TooLarge`], [`SimulationError::BadJoint`], [`SimulationError::BadPair`]); bodies that
-    /// intersect. Nothing changes then.
+    /// A body of the snapshot that was removed since; settings or numbers that cannot be used, with the names
+    /// of body and number ([`SimulationError::BadBody`], [`SimulationError::TooLarge`],
+    /// [`SimulationError::BadJoint`], [`SimulationError::BadPair`]); bodies that intersect. Nothing changes
+    /// then.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), SimulationError> {
         snapshot.check()?;
         let mut next = self.clone();
@@ -249,7 +255,7 @@ mod tests {
 
     type Change = &'static dyn Fn(&mut Snapshot);
 
-    /// Two cubes, three apart, and what a file keeps of them.
+    /// Two cubes, three apart, and their state as a file keeps it.
     fn written() -> (Simulation, Snapshot) {
         let cube = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=0.5&y=0.5&z=0.5").unwrap()));
         let mut simulation = Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap();
@@ -261,7 +267,7 @@ mod tests {
         (simulation, snapshot)
     }
 
-    /// What a file keeps of a snapshot.
+    /// The part of a snapshot that a file keeps.
     fn read(mut snapshot: Snapshot) -> Snapshot {
         for state in &mut snapshot.bodies {
             state.held = Held::default();
@@ -366,7 +372,7 @@ mod tests {
         assert!(simulation.step().unwrap_err().to_string().contains("end of the step"));
     }
 
-    /// What was changed in a file is checked where the next step begins with it.
+    /// Changes in a file are checked where the next step begins with them.
     #[test]
     fn a_place_of_a_file_is_checked() {
         let (mut simulation, mut snapshot) = written();
@@ -375,7 +381,8 @@ mod tests {
         assert!(matches!(simulation.restore(&snapshot), Err(SimulationError::Intersecting { .. })));
     }
 
-    /// What a file says is asleep and fast stands still: nothing would be proven of its flight.
+    /// A body that is asleep and fast according to a file stands still: nothing would be proven of its
+    /// flight.
     #[test]
     fn what_is_asleep_in_a_file_stands_still() {
         let (mut simulation, mut snapshot) = written();
