@@ -1,10 +1,10 @@
-//! The simulation in time: steps, and what is left to report at the end.
+//! The simulation in time: steps, and the rest to be reported at the end.
 
 use crate::listener::{ContactListener, Nobody};
 use crate::step::Step;
 use crate::{Segment, Simulation, SimulationError, StepError, StepReport};
 
-/// How far the number of steps that have passed is off at most.
+/// The most by which the computed number of steps that have passed may be off.
 const ROUNDED: u64 = 2;
 
 impl Simulation {
@@ -55,18 +55,18 @@ impl Simulation {
     /// ```
     pub fn step_with(&mut self, listener: &mut dyn ContactListener) -> Result<StepReport, StepError> {
         let (step, time) = (self.options.step, self.time);
-        // A quotient is off by a rounding, so by less than two where multiples differ.
+        // A quotient is off by a rounding, so by less than two steps where their times differ.
         let passed = ((time / step) as u64).saturating_sub(ROUNDED);
         let first = passed.max(self.steps.saturating_add(1));
         let steps = (first..=first.saturating_add(4 * ROUNDED)).find(|&steps| steps as f64 * step > time);
-        // Where they are not, no end is after the present time.
+        // Where they do not differ, no end is after the present time.
         let steps = steps.unwrap_or(first);
         let report = self.step_to_with(steps as f64 * self.options.step, listener)?;
         self.steps = steps;
         Ok(report)
     }
 
-    /// Advances to a time, as one step of whatever length.
+    /// Advances to a time, as one step of any length.
     ///
     /// ```
     /// # use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! What can be wrong with a body, a scene or a step.
+//! Errors of bodies, scenes and steps.
 
 use crate::shown::shown;
 use d2m_bvh::QueryError;
@@ -6,7 +6,7 @@ use d2m_mesh::MassError;
 use d2m_motion::OutsideDomain;
 use glam::DVec3;
 
-/// What is wrong with a body or a setting of a [`Simulation`](crate::Simulation).
+/// A fault of a body or a setting of a [`Simulation`](crate::Simulation).
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -59,7 +59,7 @@ pub enum SimulationError {
         /// What it has to be, or that it cannot be used.
         reason: &'static str,
     },
-    /// A number of what a snapshot keeps of a pair of bodies, as the impulse of a contact.
+    /// A number in a snapshot's state of a pair of bodies, as the impulse of a contact, that cannot be used.
     #[error("pair of {a} and {b}: {name} {value} {reason}")]
     BadPair {
         /// The first body's name.
@@ -73,7 +73,7 @@ pub enum SimulationError {
         /// What it has to be, or that it cannot be used.
         reason: &'static str,
     },
-    /// Mass properties.
+    /// Mass properties that are missing or cannot be used.
     #[error("body {body}: {error}")]
     Mass {
         /// The body's name.
@@ -88,12 +88,13 @@ pub enum SimulationError {
         a: String,
         /// The second body's name.
         b: String,
-        /// About the least way, along one of some directions, that frees them of each other.
+        /// About the length of the shortest way, along one of some directions, that frees them of each other.
         depth: f64,
-        /// A point where they do, world frame.
+        /// A point near which they intersect, world frame.
         point: DVec3,
     },
-    /// The velocity of a body that is not dynamic: it would be ignored, since a kinematic body has it from its motion.
+    /// A velocity of a body that is not dynamic: it would be ignored, since a kinematic body has its velocity
+    /// from its motion.
     #[error(
         "body {body}: {name} {} would be ignored: the body is not dynamic, and a kinematic one has its velocity from its motion",
         shown(value.to_array())
@@ -138,7 +139,8 @@ pub enum SimulationError {
         /// The times of the motion and of the step.
         outside: OutsideDomain,
     },
-    /// A target that a driven body would have to turn to by so much in a step that its way round is not certain.
+    /// A target with so large a turn in a step that it is not certain which way round a driven body has to
+    /// turn.
     #[error(
         "body {body}: the target is too fast: a turn of {turn:?} radians in a step, of which less than 3 can be followed"
     )]
@@ -182,9 +184,10 @@ pub enum SimulationError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StepError {
-    /// Kinematic bodies crush a dynamic body. That is proven: there are multipliers of the contacts of all that is squeezed, as they were
-    /// measured, whose combination no motion obeys (Farkas) that is no more than 128 times as fast as what closes in, while that uses up what
-    /// room is left.
+    /// Kinematic bodies crush a dynamic body. That is proven: there are multipliers of the contacts of all
+    /// squeezed bodies, as they were measured, whose combination no motion obeys (Farkas) that is up to 128
+    /// times as fast as the kinematic bodies close in, for as long as these need to use up the room that is
+    /// left.
     #[error("at time {time:?}: body {pushing} crushes body {crushed}, which cannot give way")]
     Crushed {
         /// The kinematic body.
@@ -206,9 +209,10 @@ pub enum StepError {
         /// When.
         time: f64,
     },
-    /// A kinematic body turns or speeds up so fast that flights of constant twists, 4096 in a step, stay no closer to its motion than
-    /// a hundredth of the gap; or its motion encloses itself too widely to show it. Or a dynamic body turns so fast in its joints that flights, 4096
-    /// in a step, tear them by more than the gap, as under a motor of absurd speed. Or the flight of any body is beyond the numbers.
+    /// A kinematic body turns or accelerates so fast that flights of constant twists, 4096 in a step, do not
+    /// stay closer to its motion than a hundredth of the gap; or the enclosures of its motion are too wide to
+    /// show it. Or a dynamic body turns so fast in its joints that flights, 4096 in a step, tear them by more
+    /// than the gap, as with a motor of absurd speed. Or the numbers of a body's flight are beyond doubles.
     #[error(
         "at time {time:?}: body {body} moves too fast, or too unevenly, for the step: take a shorter step or a wider gap"
     )]
@@ -218,7 +222,7 @@ pub enum StepError {
         /// When.
         time: f64,
     },
-    /// A fault of the set-up that is found at the first step.
+    /// A fault of the set-up that the first step finds.
     #[error(transparent)]
     Setup(#[from] SimulationError),
 }

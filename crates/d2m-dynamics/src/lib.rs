@@ -7,24 +7,25 @@
 //! ## Bodies
 //! - [`Body`]: a shared tree, its [`Kind`], [`Mass`], [`Damping`], [`Material`], [`Groups`], [`Presence`]; a kinematic one follows a [`Motion`].
 //!   [`BodyId`] is its name.
-//! - [`Part`]: of a body of several meshes. [`MassProperties`]: mass, center and inertia of a mesh.
-//! - [`Joint`]: what holds two bodies together, of a [`JointKind`], with a [`Motor`] (and its [`MotorTarget`]) or a [`Spring`].
+//! - [`Part`]: a mesh of a body of several ones. [`MassProperties`]: mass, center and inertia of a mesh.
+//! - [`Joint`]: holds two bodies together, of a [`JointKind`], with a [`Motor`] (and its [`MotorTarget`]) or a
+//!   [`Spring`].
 //!
 //! ## Running
 //! - [`SimulationOptions`]: gravity, step, gap, accuracy.
 //! - [`Simulation`]; [`Snapshot`] is its state, to come back to.
-//!
-//! - [`Frozen`]: questions about the bodies where they are now, as which one a ray meets ([`RayAnswer`], [`RayError`]).
+//! - [`Frozen`]: queries about the bodies where they are now, as which one a ray meets ([`RayAnswer`],
+//!   [`RayError`]).
 //!
 //! ## What is reported
-//! - [`StepReport`] of each step, with its [`Segment`]s (flights that are certified) and [`ContactImpulse`]s.
-//! - [`TouchEvent`]: who begins to touch, and who does so no more ([`TouchChange`]).
-//! - [`ContactListener`]: hears every impulse when it happens.
+//! - [`StepReport`] of each step, with its [`Segment`]s (certified flights) and [`ContactImpulse`]s.
+//! - [`TouchEvent`]: two bodies begin to touch, or stop ([`TouchChange`]).
+//! - [`ContactListener`]: receives every impulse when it acts.
 //!
 //! ## Errors
 //! [`SimulationError`] and [`MassError`]: bad input. [`StepError`]: why a simulation cannot go on.
 //!
-//! Vectors and quaternions are those of [`glam`](https://docs.rs/glam), in the version that is given out here.
+//! Vectors and quaternions are those of [`glam`](https://docs.rs/glam), in the version that is re-exported here.
 #![doc(html_root_url = "https://docs.rs/d2m-dynamics")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]

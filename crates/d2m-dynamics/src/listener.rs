@@ -1,4 +1,4 @@
-//! A listener that gets the impulses of contacts while a step is computed.
+//! Listeners, which get the impulses of contacts while a step is computed.
 
 use crate::ContactImpulse;
 
@@ -7,8 +7,8 @@ use crate::ContactImpulse;
 ///
 /// A listener that panics ends the step as an error does, before the panic goes on: the simulation can be used again.
 ///
-/// The report of the same step holds the bodies' next flights; the impulses in its segments are the same ones, of which those
-/// of the last instant follow one step later.
+/// The report of the same step holds the bodies' next flights. The impulses in its segments are the same
+/// ones; those of the last instant follow one step later.
 ///
 /// ```
 /// use d2m_bvh::MeshTree;
@@ -61,7 +61,7 @@ impl<F: FnMut(&ContactImpulse)> ContactListener for F {
     }
 }
 
-/// Nobody listens.
+/// The listener that ignores everything.
 pub(crate) struct Nobody;
 
 impl ContactListener for Nobody {

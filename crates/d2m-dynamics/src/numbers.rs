@@ -4,18 +4,19 @@ use crate::SimulationError;
 use crate::shown::{shown, shown_turn};
 use glam::{DQuat, DVec3};
 
-/// No momentum, angular momentum or velocity of a body may exceed this: their products are still numbers.
+/// No momentum, angular momentum or velocity of a body may exceed this: their products are still finite.
 pub(crate) const LARGEST: f64 = 1e100;
-/// What the square of a unit vector's length may be off: a root, four products and three sums make it one, and a rotation, of fewer than 32
-/// operations of relative error 2⁻⁵³ each, turns it. Half of that in its length is less than bounds of flights allow for.
+/// How far the square of a unit vector's length may be off one. A root, four products and three sums make it
+/// a unit vector, and a rotation turns it: fewer than 32 operations of relative error 2⁻⁵³ each. Half of that
+/// in its length is less than bounds of flights allow for.
 const UNIT: f64 = 32.0 * f64::EPSILON;
 
-/// Of numbers of which nothing more is said.
+/// Reasons for which numbers are refused.
 pub(crate) const UNUSABLE: &str = "cannot be used";
 pub(crate) const FINITE: &str = "must be finite";
 pub(crate) const NOT_NEGATIVE: &str = "must be finite and not negative";
 
-/// What is said of a number of a body, of which nothing more is known.
+/// The error that refuses a number of a body, without a further reason.
 pub(crate) fn unusable_of(body: &str, name: &'static str, value: String) -> SimulationError {
     SimulationError::BadBody { body: body.to_owned(), name, value, reason: UNUSABLE }
 }
@@ -56,7 +57,7 @@ impl Numbers<'_> {
     }
 }
 
-/// What cannot be used.
+/// A number that cannot be used.
 pub(crate) struct Fault {
     pub(crate) name: &'static str,
     pub(crate) value: f64,
@@ -85,17 +86,17 @@ pub(crate) fn material_fault(restitution: f64, friction: f64) -> Option<Fault> {
     })
 }
 
-/// Is it finite, and no component greater than [`LARGEST`]?
+/// Is it finite, and no component larger than [`LARGEST`]?
 pub(crate) fn is_small(v: DVec3) -> bool {
     v.is_finite() && v.abs().max_element() <= LARGEST
 }
 
-/// Of length one, to rounding.
+/// Has it the length one, to rounding?
 pub(crate) fn is_unit(v: DVec3) -> bool {
     (v.length_squared() - 1.0).abs() <= UNIT
 }
 
-/// A quaternion of norm one, to rounding.
+/// Is it a quaternion of norm one, to rounding?
 pub(crate) fn is_turn(q: DQuat) -> bool {
     (q.length_squared() - 1.0).abs() <= UNIT
 }

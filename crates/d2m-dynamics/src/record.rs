@@ -1,4 +1,4 @@
-//! What a step reports: segments in which every body flies a constant twist.
+//! The report of a step: segments in which every body flies a constant twist.
 
 use crate::BodyId;
 use d2m_motion::ConstantTwist;
@@ -37,8 +37,8 @@ pub struct ContactImpulse {
     pub normal: DVec3,
     /// Impulse on a (its opposite acts on b): mass times speed, world axes.
     pub impulse: DVec3,
-    /// When it acts: when the momenta change. Flights that lead to a contact which nothing bounces off are solved with it, so
-    /// such an impulse acts up to a step before its bodies are as close as they get.
+    /// The time at which the momenta change. Flights that lead to a contact without restitution are solved
+    /// with it, so such an impulse acts up to a step before its bodies are closest.
     pub time: f64,
 }
 
@@ -68,8 +68,8 @@ pub struct Segment {
     pub start: f64,
     /// Last instant; the next segment begins here.
     pub end: f64,
-    /// The bodies whose twist is another one than in the segment before, with their motions from `start` on (all the bodies
-    /// in the first segment); the others fly on.
+    /// The bodies whose twist differs from that in the segment before, with their motions from `start` on
+    /// (all bodies in the first segment); the others fly on.
     pub changed: Vec<(BodyId, ConstantTwist)>,
     /// The bodies that were removed before the segment begins.
     pub removed: Vec<BodyId>,
@@ -79,7 +79,7 @@ pub struct Segment {
     pub skipped: f64,
 }
 
-/// What has become of two bodies that touch.
+/// The change of two bodies that touch.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -102,12 +102,12 @@ pub struct Segment {
 pub enum TouchChange {
     /// The first impulse between them.
     Began,
-    /// They are further apart than 1.5 gaps, as the step found that began then, or meet no more (their groups, a pair that is ignored, none of
-    /// them dynamic), or one of them was removed.
+    /// They are further apart than 1.5 gaps, as the step found that began then; or they may not meet any more
+    /// (by their groups, an ignored pair, or because none of them is dynamic); or one of them was removed.
     Ended,
 }
 
-/// Two bodies begin to touch, or do so no more. What rests and sleeps goes on touching.
+/// Two bodies begin to touch, or stop. Bodies that rest and sleep go on touching.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -137,27 +137,28 @@ pub struct TouchEvent {
     pub a: BodyId,
     /// The other body.
     pub b: BodyId,
-    /// When.
+    /// The time of the change.
     pub time: f64,
-    /// What.
+    /// The change.
     pub change: TouchChange,
 }
 
 impl Segment {
-    /// Without length.
+    /// A segment without length.
     fn at(time: f64, changed: Vec<(BodyId, ConstantTwist)>) -> Self {
         let (removed, contacts) = (Vec::new(), Vec::new());
         Self { start: time, end: time, changed, removed, contacts, skipped: 0.0 }
     }
 }
 
-/// The segments as they become complete. One is kept back: impulses at the start of a step belong to the segment that ends there.
+/// Collects segments as they become complete. One is kept back: impulses at the start of a step belong to the
+/// segment that ends there.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Recorder {
     done: Vec<Segment>,
     last: Option<Segment>,
     open: Option<Segment>,
-    /// Removed while nothing is recorded: the next first segment says so.
+    /// Bodies removed while nothing is recorded: the next first segment states them.
     gone: Vec<BodyId>,
 }
 
@@ -182,14 +183,14 @@ impl Recorder {
         self.last.as_mut()
     }
 
-    /// As [`Self::cut`], of a segment in which bodies stood still.
+    /// As [`Self::cut`], for a segment in which bodies stood still.
     pub(crate) fn cut_skipped(&mut self, time: f64) {
         if let Some(segment) = self.cut(time) {
             segment.skipped = time - segment.start;
         }
     }
 
-    /// Bodies that fly anew from the start of the open segment.
+    /// A body begins another flight at the start of the open segment.
     pub(crate) fn change(&mut self, body: BodyId, flight: ConstantTwist) {
         let Some(open) = &mut self.open else { return };
         match open.changed.binary_search_by_key(&body, |(id, _)| *id) {
@@ -198,7 +199,7 @@ impl Recorder {
         }
     }
 
-    /// A body is gone from the start of the open segment on.
+    /// A body is removed from the start of the open segment on.
     pub(crate) fn remove(&mut self, body: BodyId) {
         let Some(open) = &mut self.open else {
             self.gone.push(body);
@@ -208,19 +209,19 @@ impl Recorder {
         open.removed.push(body);
     }
 
-    /// Impulses at the start of the open segment.
+    /// An impulse at the start of the open segment.
     pub(crate) fn contact(&mut self, impulse: ContactImpulse) {
         if let Some(last) = &mut self.last {
             last.contacts.push(impulse);
         }
     }
 
-    /// What is complete.
+    /// The complete segments.
     pub(crate) fn take(&mut self) -> Vec<Segment> {
         core::mem::take(&mut self.done)
     }
 
-    /// Everything up to the last cut.
+    /// All segments up to the last cut.
     pub(crate) fn finish(&mut self) -> Vec<Segment> {
         self.done.extend(self.last.take());
         self.open = None;

@@ -1,8 +1,8 @@
-//! Numbers in messages.
+//! Numbers as messages show them.
 
 use glam::DQuat;
 
-/// Numbers as messages show them, several in brackets: in powers of ten where zeros would fill the line.
+/// Shows numbers, several in brackets: in powers of ten where zeros would fill the line.
 pub(crate) fn shown<const N: usize>(numbers: [f64; N]) -> String {
     match &numbers[..] {
         [number] => format!("{number:?}"),
@@ -10,7 +10,7 @@ pub(crate) fn shown<const N: usize>(numbers: [f64; N]) -> String {
     }
 }
 
-/// The same of a quaternion, in the order of files: w, x, y, z.
+/// Shows a quaternion in the order of files: w, x, y, z.
 pub(crate) fn shown_turn(q: DQuat) -> String {
     shown([q.w, q.x, q.y, q.z])
 }

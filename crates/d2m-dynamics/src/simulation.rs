@@ -38,15 +38,17 @@ pub struct StepReport {
     /// The segments that are complete now. The last segment of a step is complete after the next one (its impulses are
     /// those of that step's velocity solve); [`Simulation::finish`] gives it.
     pub segments: Vec<Segment>,
-    /// Contact events in this step: those that [`SimulationOptions::max_events`](crate::SimulationOptions::max_events) limits, and impacts.
+    /// Contact events in this step: those that
+    /// [`SimulationOptions::max_events`](crate::SimulationOptions::max_events) limits, and impacts.
     pub events: u32,
     /// Pairs of bodies that were queried for a time of contact.
     pub queries: u64,
-    /// How far the velocities that were solved for are from what the law of contacts asks for, at worst: a speed. It is the largest
-    /// natural map d |λ − P(λ − (u − b + μ |u_t| n)/d)| of a contact with the impulse λ, the relative velocity u, the least normal rate b,
-    /// the projection P on Coulomb's cone and the change d of u by an impulse of one: zero where the law holds exactly.
+    /// The largest residual of the velocities that were solved for, a speed: how far they are from the law of
+    /// contact. It is the natural map d |λ − P(λ − (u − b + μ |u_t| n)/d)| of a contact with the impulse λ,
+    /// the relative velocity u, the least normal rate b, the projection P on Coulomb's cone and the change d
+    /// of u by an impulse of one: zero where the law holds exactly.
     pub residual: f64,
-    /// Bodies that begin to touch, or do so no more, in the order of time.
+    /// Bodies that begin to touch, or stop, in the order of time.
     pub touches: Vec<TouchEvent>,
 }
 
@@ -59,8 +61,9 @@ impl StepReport {
 
 /// Rigid bodies that never pass through each other.
 ///
-/// Promise: no two bodies (not ignored, at least one of them dynamic) share a point at any time of any [`Segment`]. Every
-/// segment ends at a time until which exactly its numbers are certified. The same bits at any number of threads.
+/// Promise: no two bodies (not ignored, at least one of them dynamic) share a point at any time of any
+/// [`Segment`]. Every segment ends at a time until which exactly its numbers are certified. The results are
+/// bitwise identical at any number of threads.
 ///
 /// ```
 /// use d2m_bvh::MeshTree;
@@ -91,18 +94,18 @@ pub struct Simulation {
     /// Steps since the start, which began at time 0.
     pub(crate) steps: u64,
     pub(crate) recorder: Recorder,
-    /// Boxes about the flights of the bodies, and which are near each other.
+    /// Boxes about the flights of the bodies, and the neighbors of each.
     pub(crate) neighbors: Neighbors,
     /// The greatest kinetic energy of all bodies together so far.
     pub(crate) greatest_energy: f64,
     pub(crate) joints: Vec<Joined>,
-    /// The place of the body that stands for the world, once a joint has asked for it.
+    /// The place of the body that stands for the world, once there is a joint with the world.
     pub(crate) world: Option<usize>,
-    /// Bodies that are to be checked for intersections before anything flies.
+    /// Bodies that have to be checked for intersections before anything flies.
     pub(crate) unchecked: BTreeSet<usize>,
-    /// Of each place that there ever was, how many bodies have left it.
+    /// For each place that there ever was, how many bodies have left it.
     pub(crate) generations: Vec<u32>,
-    /// Pairs of bodies that touch, as it is reported, and what is still to be reported of them.
+    /// Pairs of bodies that touch, as reported, and changes that are not reported yet.
     pub(crate) touching: BTreeSet<(usize, usize)>,
     pub(crate) touches: Vec<TouchEvent>,
 }
@@ -156,7 +159,7 @@ impl Simulation {
         &self.options
     }
 
-    /// Is there a joint that was not taken out?
+    /// Is there a joint that was not removed?
     pub(crate) fn has_joints(&self) -> bool {
         !self.joints.iter().all(Joined::is_gone)
     }
@@ -166,7 +169,8 @@ impl Simulation {
         self.bodies.iter().filter(|body| body.role.is_named()).count()
     }
 
-    /// All bodies, in the order of their places: that in which they were added, as long as none was removed.
+    /// All bodies, in the order of their places: the order in which they were added, as long as none was
+    /// removed.
     ///
     /// ```
     /// # use d2m_dynamics::{Body, Simulation, SimulationOptions};
@@ -197,7 +201,7 @@ impl Simulation {
         &self.bodies[self.place(body)].name
     }
 
-    /// Mass properties; `None` of static and kinematic bodies.
+    /// Mass properties; `None` for static and kinematic bodies.
     pub fn mass_properties(&self, body: BodyId) -> Option<MassProperties> {
         let body = &self.bodies[self.place(body)];
         let (mass, center, inertia) = (body.mass, body.center, body.inertia);

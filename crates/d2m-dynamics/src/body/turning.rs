@@ -1,14 +1,14 @@
-//! Turns, and what brakes turning.
+//! Rotation vectors, and brakes on rotation.
 
 use d2m_interval::Interval;
 use glam::{DMat3, DQuat, DVec3};
 
-/// What brakes the change of a body's spin.
+/// A brake on the change of a body's spin ([`crate::joint::pull`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pull {
-    /// How far its oscillation leads in a flight: the square of an angle.
+    /// How far the body's oscillation advances in a flight: the square of an angle.
     pub(crate) speed: f64,
-    /// The angular impulse by change of spin, world axes.
+    /// Angular impulse divided by change of spin, world axes.
     pub(crate) stiffness: DMat3,
     /// The spin without impulses.
     pub(crate) free: DVec3,
