@@ -22,15 +22,17 @@ pub struct SimulationOptions {
     pub step: f64,
     /// The distance that resting bodies keep. Default 1e-3.
     pub gap: f64,
-    /// Contact events a step at most, besides 16 times as many of bodies that something drives, and 256 times as many at which others bounce; after
-    /// that the bodies concerned stand still until the end of the step, and [`Segment::skipped`](crate::Segment::skipped) says so. Default 128.
+    /// Contact events a step at most, besides 16 times as many with kinematic bodies, and 256 times as many
+    /// at which other bodies bounce. After that the bodies concerned stand still until the end of the step,
+    /// and [`Segment::skipped`](crate::Segment::skipped) says so. Default 128.
     pub max_events: u32,
     /// Node tests of one pair query at most. A query that meets the limit ends the flight early, at a certified time. Default 2²².
     pub node_tests: u64,
-    /// Islands that friction holds sleep once their surfaces are slower than a tenth of the gap a half second for that long and not faster than before;
-    /// among more than 64 bodies, once they have moved by less than a quarter of the gap in it. Among more than 256 bodies without joints each
-    /// body sleeps for itself, once it and all that it touches are so: what sleeps bears the others as a fixed body does, and wakes where one of
-    /// them moves or presses on it otherwise. Default true.
+    /// Do bodies at rest sleep? An island that friction holds sleeps once its surfaces have been slower than
+    /// a tenth of the gap a half second for that long, and not faster than before; among more than 64 bodies,
+    /// once they have moved by less than a quarter of the gap in that time. Among more than 256 bodies
+    /// without joints each body sleeps for itself, once it and all that it touches are so: it bears the
+    /// others as a fixed body does, and wakes where one of them moves or changes what it bears. Default true.
     pub sleeping: bool,
 }
 
