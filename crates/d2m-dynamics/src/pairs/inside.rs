@@ -301,8 +301,9 @@ mod tests {
         distance(a, b, Solid::Surface).unwrap().upper
     }
 
-    /// Pins in rings, each of which turns or not, about its axis or almost, askew, off the middle, and on their way: nothing is shown that is
-    /// not so, and about the axis most of what is so. Where it is so for a part of the flight, that is shown up to some part.
+    /// Pins in rings that turn or do not, about their axis or almost so, askew, off the middle, and in
+    /// motion. Nothing is proven that is false, and for turns about the axis most of what is true is proven.
+    /// Where it is true for a part of the flight, it is proven up to some time.
     #[test]
     fn pins_in_rings_are_as_far_apart_as_is_shown() {
         let state = &mut KnuthRandom(5);
