@@ -3,7 +3,7 @@
 use crate::BodyId;
 use glam::{BVec3, DVec3};
 
-/// The directions that a joint leaves free.
+/// The motion that a joint leaves free.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -181,7 +181,7 @@ impl Spring {
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Joint {
-    /// What it leaves free.
+    /// The motion that it leaves free.
     pub kind: JointKind,
     /// The first body.
     pub a: BodyId,
