@@ -18,6 +18,8 @@
 //! the axis in the middle of the flight, are convex functions of time and place. So they are largest at the
 //! start or the end of the flight, and at an end of the part of an edge that comes nearer than m to the
 //! places between z₀ and z₁. With the largest value r of their sum
+//!
+//! ```text
 //! distance ≥ min(m, c − r),      r = max (|p × n| + α |p|)
 //! ```
 //!
