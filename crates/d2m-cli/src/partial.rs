@@ -4,6 +4,7 @@ use crate::arguments::BatchArguments;
 use crate::engine::Pair;
 use crate::failure::Failure;
 use crate::output::Output;
+use crate::report::csv_header;
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -17,8 +18,14 @@ pub(crate) struct Partial {
 }
 
 impl Partial {
-    /// Opens what an earlier run left, or begins anew. What comes of other inputs is refused; half a line is dropped.
-    pub(crate) fn open(arguments: &BatchArguments, pair: &Pair, out: &Output) -> Result<Self, Failure> {
+    /// Opens what an earlier run left of this many trials, or begins anew. What comes of other inputs is
+    /// refused, and so is a line that is not the answer to its trial; half a line at the end is dropped.
+    pub(crate) fn open(
+        arguments: &BatchArguments,
+        pair: &Pair,
+        out: &Output,
+        trials: usize,
+    ) -> Result<Self, Failure> {
         let Output::File(out) = out else {
             return Err(Failure::at("--resume", "standard output keeps no answers: name a file with --out"));
         };
@@ -37,6 +44,13 @@ impl Partial {
                 return Err(Failure::at(path.display(), reason));
             }
         };
+        let columns = csv_header(arguments.further).split(',').count();
+        let mut answers = lines.split_terminator('\n').enumerate();
+        if let Some((trial, _)) = answers.find(|&(k, line)| k >= trials || !is_answer(line, k, columns)) {
+            let place = format!("{}, line {}", path.display(), trial + 2);
+            let reason = format!("is not the answer to trial {trial}: remove the file to begin anew");
+            return Err(Failure::at(place, reason));
+        }
         fs::write(&path, format!("{origin}{lines}")).map_err(fault)?;
         let file = OpenOptions::new().append(true).open(&path).map_err(fault)?;
         Ok(Self { path, file, lines })
@@ -64,6 +78,15 @@ impl Partial {
     pub(crate) fn remove(self) {
         let _ = fs::remove_file(&self.path);
     }
+}
+
+/// Has a line the form of the answer to a trial? What was damaged or edited would otherwise stand in the
+/// results as the answer to another trial.
+fn is_answer(line: &str, trial: usize, columns: usize) -> bool {
+    let fields: Vec<&str> = line.split(',').collect();
+    let is_of_trial = fields.len() == columns && fields[0] == trial.to_string();
+    let is_text = !line.contains(char::is_control);
+    is_of_trial && is_text && ["contact", "separated", "undecided"].contains(&fields[1])
 }
 
 /// A number that differs for different inputs: the bytes of the files, the meshes as they were read, whatever files those name, and the options that

@@ -86,3 +86,38 @@ fn answers_of_two_meshes_are_not_mixed() {
     let run = d2m(&resumed);
     assert!(run.status.success() && stderr(&run).contains("256 of 300"), "{}", stderr(&run));
 }
+
+/// A line that is damaged, gone or there twice would put the answer to one trial in the place of another.
+#[test]
+fn what_is_not_the_answer_to_its_trial_is_refused() {
+    let folder = Folder::new("resume-damaged");
+    let line = |k: usize| format!("1,0,0,0,-3,0,{},4,0,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0\n", k as f64 * 1e-3);
+    let trials = folder.file("t.csv", &(0..300).map(line).collect::<String>());
+    let asked = ["batch", CUBE, CUBE, "--trials", &trials];
+    let out = folder.path("results.csv");
+    let resumed = [&asked[..], &["--resume", "--out", &out]].concat();
+    let lines = ended(&folder, &asked, 256);
+    let refused_after = |edit: &dyn Fn(&mut Vec<String>), line: usize, trial: usize| {
+        let mut lines = lines.clone();
+        edit(&mut lines);
+        folder.file("results.csv.part", &(lines.join("\n") + "\n"));
+        let place = format!("results.csv.part, line {line}: is not the answer to trial {trial}");
+        refused(&resumed, &[&place]);
+        assert!(!folder.names().contains(&"results.csv".to_owned()));
+    };
+    refused_after(&|lines| drop(lines.remove(3)), 4, 2);
+    refused_after(&|lines| lines.insert(3, lines[2].clone()), 4, 2);
+    refused_after(&|lines| lines.insert(3, String::new()), 4, 2);
+    refused_after(&|lines| lines[3].truncate(20), 4, 2);
+    refused_after(&|lines| lines[3].push('\r'), 4, 2);
+    refused_after(&|lines| lines[3] = lines[3].replace("contact", "touched"), 4, 2);
+    // More answers than trials.
+    let all = |lines: &mut Vec<String>| {
+        let of = |trial: usize| format!("{trial},separated,inf,inf,,1.000,,,,,,,,,,,");
+        lines.extend((256..301).map(of));
+    };
+    refused_after(&all, 302, 300);
+    ended(&folder, &asked, 256);
+    let run = d2m(&resumed);
+    assert!(run.status.success() && stderr(&run).contains("256 of 300"), "{}", stderr(&run));
+}

@@ -36,8 +36,9 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
     let [a, b] = load_both(&arguments.a, &arguments.b, &arguments.query.sizes)?;
     out.spare_inputs()?;
     let pair = Pair::new(a, b, &arguments.query)?;
-    let mut partial = if arguments.resume { Some(Partial::open(arguments, &pair, &out)?) } else { None };
-    let known = partial.as_ref().map_or(0, Partial::count).min(trials.len());
+    let mut partial =
+        if arguments.resume { Some(Partial::open(arguments, &pair, &out, trials.len())?) } else { None };
+    let known = partial.as_ref().map_or(0, Partial::count);
     // The lines of an ended run hold less than a proof needs: the trials that are to be proven are queried once more.
     let again: Vec<usize> = (0..known).filter(|&trial| is_proven(share, trial)).collect();
     if known > 0 {
