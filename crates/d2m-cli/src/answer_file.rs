@@ -9,7 +9,7 @@ use d2m::bvh::{ContactSpan, Solid, StartState, TimeOfContact, Window};
 use d2m::feature::FeaturePair;
 use d2m::motion::RigidMotion;
 use d2m::motion::serde_object::Object;
-use d2m_io::{contact_fields, start_in_json};
+use d2m_io::{clearance_fields, contact_fields, start_in_json};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -21,6 +21,7 @@ struct About {
     window: [f64; 2],
     min_separation: f64,
     triangles: [usize; 2],
+    solid: Option<bool>,
     solids: [bool; 2],
     toc: Option<f64>,
     toc_hi: Option<f64>,
@@ -30,7 +31,28 @@ struct About {
     start_proven: Option<bool>,
     left: Option<[f64; 2]>,
     clearance: Option<[f64; 2]>,
+    clearance_status: Option<String>,
+    clearance_time: Option<f64>,
 }
+
+/// What any answer may say of its proof.
+const OF_PROOFS: [&str; 4] = ["verified", "proof_steps", "why", "counterexample"];
+
+/// What answers say besides the verdict, the least distance or the spans.
+const BESIDES_CONTACT: [&str; 10] = [
+    "microseconds",
+    "window",
+    "min_separation",
+    "triangles",
+    "solid",
+    "solids",
+    "left",
+    "clearance",
+    "clearance_status",
+    "clearance_time",
+];
+const BESIDES_CLEARANCE: [&str; 3] = ["microseconds", "window", "triangles"];
+const BESIDES_SPANS: [&str; 3] = ["window", "resolution", "spans"];
 
 impl About {
     /// How the bodies are said to stand at the start: where that is not proven, a word stands for what is not decided.
@@ -98,6 +120,15 @@ impl AnswerFile<'_> {
         if holds { Ok(()) } else { Err(self.fault(what, "not an answer to this question")) }
     }
 
+    /// Nothing is said that no answer of its kind says: nobody would have compared it.
+    fn check_keys(&self, object: &Value, known: &Value, besides: &[&str]) -> Result<(), Failure> {
+        let is_known =
+            |key: &str| known.get(key).is_some() || besides.contains(&key) || OF_PROOFS.contains(&key);
+        let mut keys = object.as_object().into_iter().flat_map(serde_json::Map::keys);
+        let other = keys.find(|key| !is_known(key));
+        other.map_or(Ok(()), |key| Err(self.fault(key, "no answer of this kind says this")))
+    }
+
     /// A field, by its name.
     fn field<T: DeserializeOwned>(&self, object: &Value, name: &str) -> Result<T, Failure> {
         let value = object.get(name).cloned().unwrap_or(Value::Null);
@@ -105,6 +136,7 @@ impl AnswerFile<'_> {
     }
 
     fn spans(&self, object: &Value) -> Result<Vec<Promise>, Failure> {
+        self.check_keys(object, &Value::Null, &BESIDES_SPANS)?;
         let window: [f64; 2] = self.field(object, "window")?;
         self.check("window", window == [self.window.start(), self.window.end()])?;
         let spans: Vec<Object<ContactSpan>> = self.field(object, "spans")?;
@@ -119,8 +151,10 @@ impl AnswerFile<'_> {
         let triangles: [usize; 2] = self.field(&object, "triangles")?;
         let counts = [&self.pair.a, &self.pair.b].map(|body| body.mesh().triangle_count());
         self.check("triangles", triangles == counts)?;
+        let said = object.clone();
         (object["lower"], object["upper"]) = (json!(lower), json!(upper));
         let found = serde_json::from_value(object).map_err(|error| self.fault("clearance", error))?;
+        self.check_keys(&said, &clearance_fields(&found), &BESIDES_CLEARANCE)?;
         Ok(vec![Promise::Clearance { found, accuracy: None }])
     }
 
@@ -135,7 +169,9 @@ impl AnswerFile<'_> {
         self.check("min_separation", about.min_separation == pair.min_separation)?;
         let counts = [&pair.a, &pair.b].map(|body| body.mesh().triangle_count());
         self.check("triangles", about.triangles == counts)?;
-        self.check("solids", about.solids == pair.solids.map(|solid| solid == Solid::Filled))?;
+        let solids = pair.solids.map(|solid| solid == Solid::Filled);
+        self.check("solids", about.solids == solids)?;
+        self.check("solid", about.solid.is_none_or(|said| said == (solids == [true; 2])))?;
         if !["contact", "separated", "undecided"].contains(&about.status.as_str()) {
             return Err(self.fault("status", format!("{:?} is none of an answer", about.status)));
         }
@@ -151,8 +187,10 @@ impl AnswerFile<'_> {
         } else if about.start.is_some() {
             object["start"] = json!(start);
         }
+        let said = object.clone();
         let answer: TimeOfContact =
             serde_json::from_value(object).map_err(|error| self.fault(&about.status, error))?;
+        self.check_keys(&said, &Value::Object(contact_fields(&answer, window)), &BESIDES_CONTACT)?;
         // Of a contact it is a part of what is promised.
         if !is_leaving && answer.contact().is_none() {
             let known = contact_fields(&answer, window);
@@ -181,8 +219,14 @@ impl AnswerFile<'_> {
         }];
         if let Some([lower, upper]) = about.clearance {
             self.check("clearance", answer.is_separated())?;
-            promises.push(Promise::Apart { lower, upper });
+            let in_window = |time: f64| window.start() <= time && time <= window.end();
+            self.check("clearance_time", about.clearance_time.is_none_or(in_window))?;
+            promises.push(Promise::Apart { lower, upper, time: about.clearance_time });
         }
+        let word = about.clearance_status.as_deref();
+        let is_apart =
+            word.is_none_or(|word| about.clearance.is_some() && ["clear", "undecided"].contains(&word));
+        self.check("clearance_status", is_apart)?;
         Ok(promises)
     }
 }

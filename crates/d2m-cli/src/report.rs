@@ -65,7 +65,8 @@ pub(crate) fn text(pair: &Pair, window: Window, answer: &Answer) -> String {
     if let Some(departure) = &further.departure {
         let left = match departure.left {
             Some(left) => format!("in contact at {}, proven apart at {}", short(left.lo), short(left.hi)),
-            None => "never proven apart in the window".to_owned(),
+            None if answer.verdict.contact().is_some() => "never proven apart in the window".to_owned(),
+            None => "not proven to have parted".to_owned(),
         };
         line("start", format!("{}; {left}", start_word(departure.start)));
     }
@@ -110,6 +111,7 @@ pub(crate) fn json(pair: &Pair, window: Window, answer: &Answer) -> String {
     if let Some(clearance) = &further.clearance {
         put("clearance", json!([clearance.lower, clearance.upper]));
         put("clearance_status", json!(clearance_word(clearance.status)));
+        put("clearance_time", json!(clearance.time));
     }
     if let Some(departure) = &further.departure {
         put("left", json!(departure.left));

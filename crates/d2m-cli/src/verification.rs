@@ -51,8 +51,9 @@ pub(crate) enum Promise {
     Contact(TimeOfContact),
     /// Of `d2m toc --start leave`.
     Departure(Departure),
-    /// Of `d2m toc --clearance`: the ends of the enclosure besides.
-    Apart { lower: f64, upper: f64 },
+    /// Of `d2m toc --clearance`: the ends of the enclosure besides, and when the bodies come as near as its
+    /// upper end; not known: at some time.
+    Apart { lower: f64, upper: f64, time: Option<f64> },
     /// Of `d2m clearance`; no accuracy: any width.
     Clearance { found: Clearance, accuracy: Option<f64> },
     /// Of `d2m spans`.
@@ -116,10 +117,11 @@ impl<'p> PairVerifier<'p> {
             Promise::Spans { spans, resolution } => {
                 verifier.contact_spans(&bodies, window, options, Some(*resolution), spans, most)
             }
-            Promise::Apart { lower, upper } => {
+            Promise::Apart { lower, upper, time } => {
                 let span = TimeSpan { from: window.start(), to: window.end() };
                 let clear = Claim::Clear { span, distance: lower.next_down() };
-                let within = Claim::Within { span, distance: *upper, triangles: None };
+                let nearest = time.map_or(span, |time| TimeSpan { from: time, to: time });
+                let within = Claim::Within { span: nearest, distance: *upper, triangles: None };
                 verify(&verifier.query(&bodies, window, options), &Claim::All(vec![clear, within]), most)
             }
         })

@@ -87,6 +87,10 @@ fn edited_answers_are_never_verified() {
         ("min_separation", json!(0.5)),
         ("triangles", json!([12, 12])),
         ("solids", json!([false, true])),
+        ("solid", json!(false)),
+        ("clear_until", json!(0.9)),
+        ("clearance_status", json!("clear")),
+        ("resolution", json!(1.0)),
     ] {
         let mut lie = answer.clone();
         lie[key] = value;
@@ -249,6 +253,32 @@ fn answers_of_every_question_are_verified() {
             let (code, said) = again(&lie);
             assert!(matches!(code, Some(3 | 20 | 21)), "{words:?} {place} {value}: {code:?} {said}");
         }
+    }
+}
+
+/// The nearest place of two bodies that turn is narrow in time: an answer says when it is, and is verified
+/// again.
+#[test]
+fn a_least_distance_says_when_it_is() {
+    let folder = Folder::new("verify-nearest");
+    let bodies = ["shape:gear", "shape:torus", "--motion-a", "x=-3,3.2,0.1;v=4,0,0;w=0,0,5"];
+    let out = d2m(&[&["toc", "--clearance", "--json"], &bodies[..]].concat());
+    let answer: Value = serde_json::from_str(&stdout(&out)).unwrap();
+    let code = |answer: &Value| {
+        let path = folder.file("answer.json", &answer.to_string());
+        d2m(&[&["verify"][..], &bodies, &["--answer", &path]].concat()).status.code()
+    };
+    assert_eq!(code(&answer), Some(0), "{answer}");
+    for (key, value, expected) in [
+        ("clearance_time", json!(0.5), 20),
+        ("clearance_time", json!(1.5), 3),
+        ("clearance_status", json!("contact"), 3),
+        ("evidence", json!("near"), 3),
+        ("separation", json!(0.1), 3),
+    ] {
+        let mut lie = answer.clone();
+        lie[key] = value;
+        assert_eq!(code(&lie), Some(expected), "{lie}");
     }
 }
 
