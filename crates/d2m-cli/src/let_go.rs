@@ -82,7 +82,9 @@ pub(crate) fn at_start([a, b]: [Moving<'_>; 2], window: Window, options: &QueryO
     }
 }
 
-/// What is said of a certificate where pairs are let go.
-pub(crate) const fn exception(let_go: &[&LetGo]) -> &'static str {
-    if let_go.is_empty() { "" } else { ", but for what was in contact at the start until it had parted" }
+/// What is said of a certificate where pairs are let go, also where the time was used up before they were
+/// proven to have parted.
+pub(crate) fn exception(beginnings: &[Beginning]) -> &'static str {
+    let is_from_start = beginnings.iter().all(|beginning| matches!(beginning, Beginning::Start));
+    if is_from_start { "" } else { ", but for what was in contact at the start until it had parted" }
 }

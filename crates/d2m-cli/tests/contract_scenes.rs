@@ -267,3 +267,63 @@ fn answers_about_departures_are_verified() {
         assert!(stderr(&run).contains(word), "{}", stderr(&run));
     }
 }
+
+/// A cube goes out of another one until they part, at 0.38, and from 0.5 on both turn against each other, so
+/// that no bound shows them apart.
+fn turning(folder: &Folder, rate: f64, more: &str) -> String {
+    let (place, turn) = ("[[0.9, 1.3], [1.55]]", std::f64::consts::FRAC_PI_4);
+    let value = |pieces: &str| format!(r#"{{"times": [0, 0.5, 1], "pieces": {pieces}}}"#);
+    let (place, a, b) = (
+        value(place),
+        value(&format!("[[{turn}], [{turn}, {rate}]]")),
+        value(&format!("[[0], [0, -{rate}]]")),
+    );
+    let text = format!(
+        r#"{{"start": "leave", "bodies": [{{"name": "a", "mesh": "shape:box", "motion": {{"chain": [
+            {{"joint": "prismatic", "axis": [1, 0, 0], "value": {place}}},
+            {{"joint": "revolute", "axis": [0, 0, 1], "value": {a}}}]}}}},
+        {{"name": "b", "mesh": "shape:box", "motion": {{"chain": [
+            {{"joint": "revolute", "axis": [0, 0, 1], "value": {b}}}]}}}}{more}]}}"#
+    );
+    folder.file("turning.json", &text)
+}
+
+/// What is let go and undecided later was no more free at the start than what is let go and decided.
+#[test]
+fn an_undecided_pair_is_not_called_free_before_it_has_parted() {
+    let folder = Folder::new("contract-undecided");
+    let path = turning(&folder, 1e12, "");
+    for more in [&[][..], &["--first"]] {
+        let asked = [&["scene", &path, "--time-limit", "0.5"], more].concat();
+        let text = stdout(&d2m(&asked));
+        assert!(text.starts_with("UNDECIDED") && !text.contains("certified free"), "{text}");
+        assert!(
+            text.contains("until it had parted") && text.contains("a \u{2013} b: undecided from then on")
+        );
+        assert!(
+            text.contains("left: a \u{2013} b: overlapping at the start, proven apart at 0.37"),
+            "{text}"
+        );
+        let answer: Value = serde_json::from_str(&stdout(&d2m(&[&asked[..], &["--json"]].concat()))).unwrap();
+        assert_eq!(answer["contacts"][0]["status"], "undecided", "{answer}");
+        assert!(answer["left"][0]["left"][1].as_f64().is_some_and(|time| time < 0.38), "{answer}");
+    }
+    // Where nothing is proven, nothing is said, whatever counts of the start.
+    for start in ["leave", "report"] {
+        let text = stdout(&d2m(&["scene", &path, "--time-limit", "1e-9", "--start", start]));
+        assert!(text.contains("undecided from the start") && !text.contains("certified"), "{text}");
+    }
+}
+
+/// When a pair had parted is no part of the search, and its limit holds all the same.
+#[test]
+fn a_limit_also_holds_for_when_pairs_had_parted() {
+    let folder = Folder::new("contract-limit");
+    let fly = r#", {"name": "wall", "mesh": "shape:box", "motion": {"x": [9, 0, 0]}},
+        {"name": "fly", "mesh": "shape:box", "motion": {"x": [9, 9, 0], "v": [0, -18, 0]}}"#;
+    let path = turning(&folder, 1e9, fly);
+    let start = std::time::Instant::now();
+    let text = stdout(&d2m(&["scene", &path, "--first", "--time-limit", "0.5"]));
+    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+    assert!(text.starts_with("CONTACT of 1 pair") && text.contains("until it had parted"), "{text}");
+}

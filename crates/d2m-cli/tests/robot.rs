@@ -271,3 +271,28 @@ fn a_path_can_be_seen() {
     refused(&["robot", robot, "--path", path, "--view", robot], &["arm.urdf", "would be overwritten"]);
     refused(&["robot", robot, "--path", path, "--view", "-"], &["--view"]);
 }
+
+/// What ends at its start is certified at no time.
+#[test]
+fn nothing_is_called_free_at_the_start() {
+    let Files { folder, robot, path, .. } = &files("robot-start");
+    let at = |more: &str| {
+        let scene = format!(
+            r#"{{"bodies": [{{"name": "post", "mesh": "shape:box?x=0.05&y=0.05&z=1", "pose": {{"x": [0.25, 0, 0]}}}}]{more}}}"#
+        );
+        folder.file("scene.json", &scene)
+    };
+    let said = |scene: &str, limit: &[&str]| {
+        stdout(&d2m(&[&["robot", robot, "--path", path, "--scene", scene], limit].concat()))
+    };
+    let met = said(&at(r#", "min_separation": 0.01"#), &[]);
+    assert!(
+        met.starts_with("CONTACT") && met.contains("in contact from the start of the path: overlapping"),
+        "{met}"
+    );
+    let open = said(&at(r#", "start": "leave""#), &["--time-limit", "1e-9"]);
+    assert!(open.starts_with("UNDECIDED from the start: "), "{open}");
+    for text in [met, open] {
+        assert!(!text.contains("free from") && !text.contains("further apart"), "{text}");
+    }
+}

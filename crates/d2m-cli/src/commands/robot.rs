@@ -10,7 +10,7 @@ use crate::let_go::{Beginning, LetGo, at_start, exception};
 use crate::load::named;
 use crate::outcome::Outcome;
 use crate::output::{Output, note, print, printable, short};
-use crate::report::{clearance_word, clearance_words, evidence_sentence, vector};
+use crate::report::{clearance_word, clearance_words, evidence_sentence, start_word, vector};
 use crate::robot_path::read_path;
 use crate::robot_scene::RobotSceneFile;
 use crate::unlike_sizes::unlike;
@@ -122,7 +122,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<Outcome, Failure> {
         let further = Further { checked, clearance, proof, let_go: &let_go, start };
         json(&answer, window, &warnings, &further)
     } else {
-        text(&answer, &bodies, &let_go)
+        text(&answer, &bodies, &beginnings)
             + &format!("  checked     {} pairs of {} bodies\n", checked.pairs, checked.bodies)
             + &clearance.as_ref().map_or(String::new(), nearness)
             + &proof.as_ref().map_or(String::new(), |proof| match proof {
@@ -207,7 +207,7 @@ fn beginnings(bodies: &PathBodies<'_>, answer: &PathAnswer) -> Vec<Beginning> {
 }
 
 /// What is proven of all pairs at the times that are certified.
-fn kept(bodies: &PathBodies<'_>, let_go: &[&LetGo]) -> String {
+fn kept(bodies: &PathBodies<'_>, beginnings: &[Beginning]) -> String {
     let distances = bodies.pairs().iter().map(|&pair| bodies.pair_options(pair).min_separation);
     let (least, most) =
         distances.fold((f64::INFINITY, 0.0_f64), |(least, most), d| (least.min(d), most.max(d)));
@@ -219,7 +219,7 @@ fn kept(bodies: &PathBodies<'_>, let_go: &[&LetGo]) -> String {
         let [least, most] = [least, most].map(short);
         format!(", each pair further apart than its own minimum separation (from {least} to {most})")
     };
-    kept + exception(let_go)
+    kept + exception(beginnings)
 }
 
 /// The answer for a program.
@@ -295,11 +295,14 @@ const fn status(answer: &PathAnswer) -> &'static str {
 }
 
 /// The answer for a person.
-fn text(answer: &PathAnswer, bodies: &PathBodies<'_>, let_go: &[&LetGo]) -> String {
+fn text(answer: &PathAnswer, bodies: &PathBodies<'_>, beginnings: &[Beginning]) -> String {
     let [start, end] = [bodies.window().start(), bodies.window().end()].map(short);
-    let kept = kept(bodies, let_go);
+    let kept = kept(bodies, beginnings);
     let mut text = match answer {
         PathAnswer::Free { .. } => format!("FREE: certified, no contact from {start} to {end}{kept}\n"),
+        PathAnswer::Undecided { free_until, a, b, .. } if *free_until <= bodies.window().start() => {
+            format!("UNDECIDED from the start: {} \u{2013} {} needs more time\n", printable(a), printable(b))
+        }
         PathAnswer::Undecided { free_until, a, b, .. } => format!(
             "UNDECIDED: certified free from {start} until {}{kept}; then {} \u{2013} {} needs more time\n",
             short(*free_until),
@@ -317,13 +320,18 @@ fn text(answer: &PathAnswer, bodies: &PathBodies<'_>, let_go: &[&LetGo]) -> Stri
         let separation = bodies.pair_options(found.bodies).min_separation;
         // Writing to a string cannot fail.
         let _ = writeln!(text, "  time        [{}, {}]", short(contact.time_lo), short(contact.time_hi));
-        let _ = writeln!(text, "  certified   free from {start} until the first of these times{kept}");
+        let certified = if contact.time_lo > bodies.window().start() || contact.start == StartState::Apart {
+            format!("free from {start} until the first of these times{kept}")
+        } else {
+            format!("in contact from the start of the path: {}", start_word(contact.start))
+        };
+        let _ = writeln!(text, "  certified   {certified}");
         let _ = writeln!(text, "  evidence    {}", evidence_sentence(contact, separation));
         let _ = writeln!(text, "  separation  {:.4e} left then", contact.separation);
         let _ = writeln!(text, "  point       {} on {a}", vector(contact.point_a));
         let _ = writeln!(text, "  normal      {} from {a} to {b}", vector(contact.normal));
     }
-    for pair in let_go {
+    for pair in beginnings.iter().filter_map(Beginning::let_go) {
         let _ = writeln!(text, "  left        {}", pair.words());
     }
     text

@@ -21,14 +21,16 @@ use std::fmt::Write;
 struct Row {
     bodies: [usize; 2],
     answer: TimeOfContact,
+    /// What counts of a contact at the start.
+    start: Start,
     /// Of a pair whose contact at the start is let go: how it stood at the start.
     left_from: Option<StartState>,
 }
 
 impl Row {
-    fn new(scene: &Scene, bodies: [BodyId; 2], answer: TimeOfContact) -> Self {
+    fn new(scene: &Scene, bodies: [BodyId; 2], answer: TimeOfContact, options: QueryOptions) -> Self {
         let bodies = bodies.map(BodyId::index);
-        let options = scene.pair_options(bodies, QueryOptions::default());
+        let options = scene.pair_options(bodies, options);
         let left_from = match (&answer, options.start) {
             (TimeOfContact::Contact(contact), Start::Leave) => Some(match contact.left {
                 None => contact.start,
@@ -37,7 +39,7 @@ impl Row {
             }),
             _ => None,
         };
-        Self { bodies, answer, left_from }
+        Self { bodies, answer, start: options.start, left_from }
     }
 }
 
@@ -60,7 +62,7 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
     };
-    let row = |pair: PairContact| Row::new(&scene, [pair.a, pair.b], pair.answer);
+    let row = |pair: PairContact| Row::new(&scene, [pair.a, pair.b], pair.answer, options);
     let rows: Vec<Row> = pool.install(|| {
         if !arguments.first {
             let contacts = world.contacts_with_progress(scene.window, &progress).map_err(named)?;
@@ -69,17 +71,17 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
         Ok(match world.first_contact_with_progress(scene.window, &progress).map_err(named)? {
             FirstContact::Separated => Vec::new(),
             FirstContact::Undecided { clear_until, a, b, .. } => {
-                vec![Row::new(&scene, [a, b], TimeOfContact::Undecided { clear_until })]
+                vec![Row::new(&scene, [a, b], TimeOfContact::Undecided { clear_until }, options)]
             }
             FirstContact::Contact { a, b, contact, overlapping, .. } => {
-                let first = Row::new(&scene, [a, b], TimeOfContact::Contact(contact));
+                let first = Row::new(&scene, [a, b], TimeOfContact::Contact(contact), options);
                 std::iter::once(first).chain(overlapping.into_iter().map(row)).collect()
             }
         })
     })?;
     bar.finish_and_clear();
     let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
-    let beginnings = pool.install(|| beginnings(&scene, &names, &rows));
+    let beginnings = pool.install(|| beginnings(&scene, &names, &rows, options));
     let let_go: Vec<&LetGo> = beginnings.iter().filter_map(Beginning::let_go).collect();
     let proof = if arguments.verify { Some(prove(&scene, &rows)?) } else { None };
     print_answer(&if arguments.json {
@@ -87,7 +89,7 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
         proof.map_or(Ok(text.clone()), |proof| proof.put_into(&text))?
     } else {
         let proof = proof.map_or(String::new(), |proof| format!("  verified: {}\n", proof.sentence()));
-        text(scene.window, &names, &rows, &let_go) + &proof + &sizes_line_of(&scene)
+        text(scene.window, &names, &rows, &beginnings) + &proof + &sizes_line_of(&scene)
     })?;
     let outcome = if rows.iter().any(|row| row.answer.contact().is_some()) {
         Outcome::Contact
@@ -99,14 +101,17 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
     Ok(outcome.reported(arguments.exit_status))
 }
 
-/// From when on it counts that pairs are not in the answer.
-fn beginnings(scene: &Scene, names: &[&str], rows: &[Row]) -> Vec<Beginning> {
+/// From when on it counts that pairs have no contact in the answer.
+fn beginnings(scene: &Scene, names: &[&str], rows: &[Row], options: QueryOptions) -> Vec<Beginning> {
     if !scene.lets_go() {
         return Vec::new();
     }
-    let is_listed = |[a, b]: [usize; 2]| rows.iter().any(|row| row.bodies == [a, b] || row.bodies == [b, a]);
+    // Contacts say it themselves.
+    let contacts: Vec<&Row> = rows.iter().filter(|row| row.answer.contact().is_some()).collect();
+    let is_listed =
+        |[a, b]: [usize; 2]| contacts.iter().any(|row| row.bodies == [a, b] || row.bodies == [b, a]);
     let of = |pair: [usize; 2]| {
-        let options = scene.pair_options(pair, QueryOptions::default());
+        let options = scene.pair_options(pair, options);
         let moving = pair.map(|body| scene.bodies[body].moving());
         Beginning::of(pair.map(|body| names[body]), moving, scene.window, &options)
     };
@@ -183,11 +188,11 @@ fn pairs(count: usize) -> String {
 }
 
 /// The answer for a person.
-fn text(window: Window, names: &[&str], rows: &[Row], let_go: &[&LetGo]) -> String {
+fn text(window: Window, names: &[&str], rows: &[Row], beginnings: &[Beginning]) -> String {
     let [start, end] = [window.start(), window.end()].map(short);
     let names: Vec<_> = names.iter().map(|name| printable(name)).collect();
     let contacts = rows.iter().filter(|row| row.answer.contact().is_some()).count();
-    let bodies = format!("{} bodies from {start} to {end}{}\n", names.len(), exception(let_go));
+    let bodies = format!("{} bodies from {start} to {end}{}\n", names.len(), exception(beginnings));
     let mut text = match (contacts, rows.len() - contacts) {
         (0, 0) => format!("SEPARATED: certified, no contact of {bodies}"),
         (_, 0) => format!("CONTACT of {} of {bodies}", pairs(contacts)),
@@ -209,19 +214,26 @@ fn text(window: Window, names: &[&str], rows: &[Row], let_go: &[&LetGo]) -> Stri
                 departure_words(row, contact)
             ),
             TimeOfContact::Undecided { clear_until } => {
-                writeln!(
-                    text,
-                    "  t = {:<22} {pair}: undecided, certified free until then",
-                    short(*clear_until)
-                )
+                let until = undecided_words(row.start, *clear_until, window);
+                writeln!(text, "  t = {:<22} {pair}: {until}", short(*clear_until))
             }
             TimeOfContact::Separated => Ok(()),
         };
     }
-    for pair in let_go {
+    for pair in beginnings.iter().filter_map(Beginning::let_go) {
         let _ = writeln!(text, "  left: {}", pair.words());
     }
     text
+}
+
+/// What is proven of an undecided pair until this time. Of one whose contact at the start is let go that is
+/// what is said of those.
+fn undecided_words(start: Start, clear_until: f64, window: Window) -> &'static str {
+    match start {
+        _ if clear_until <= window.start() => "undecided from the start",
+        Start::Leave => "undecided from then on",
+        _ => "undecided, certified free until then",
+    }
 }
 
 /// What became of a contact at the start.
@@ -260,7 +272,7 @@ mod tests {
                 scene(&format!("start-{end}"), &format!(r#"{{"window": [0, {end}], "bodies": [{bodies}]}}"#));
             let found = scene.world(QueryOptions::default()).first_contact(scene.window).unwrap();
             let FirstContact::Contact { a, b, contact, .. } = found else { panic!("they meet") };
-            let row = Row::new(&scene, [a, b], TimeOfContact::Contact(contact));
+            let row = Row::new(&scene, [a, b], TimeOfContact::Contact(contact), QueryOptions::default());
             assert!(prove(&scene, &[row]).unwrap().is_verified(), "{end}");
         }
     }
@@ -272,8 +284,10 @@ mod tests {
             {"times": [0, 0.5, 1], "poses": [{"x": [0.5, 0, 0]}, {"x": [3, 0, 0]}, {"x": [0.5, 0, 0]}], "join": "linear"}}]}"#;
         let scene = scene("meets-again", text);
         let found = scene.world(QueryOptions::default()).contacts(scene.window).unwrap();
-        let rows: Vec<Row> =
-            found.iter().map(|pair| Row::new(&scene, [pair.a, pair.b], pair.answer)).collect();
+        let rows: Vec<Row> = found
+            .iter()
+            .map(|pair| Row::new(&scene, [pair.a, pair.b], pair.answer, QueryOptions::default()))
+            .collect();
         let is_proven = |rows: &[Row]| prove(&scene, rows).is_ok_and(|proof| proof.is_verified());
         assert!(rows.len() == 1 && is_proven(&rows));
         assert!(!is_proven(&[]));

@@ -21,19 +21,24 @@ pub(crate) fn picture_of_path(
     let [start, end] = [window.start(), window.end()].map(short);
     let let_go: Vec<&LetGo> = beginnings.iter().filter_map(Beginning::let_go).collect();
     let headline = match answer {
-        PathAnswer::Free { .. } => format!("FREE from t = {start} to {end}{}", exception(&let_go)),
+        PathAnswer::Free { .. } => format!("FREE from t = {start} to {end}{}", exception(beginnings)),
         PathAnswer::Contact(found) => {
             format!("CONTACT of {} and {} at t = {}", found.a, found.b, short(found.contact.time_lo))
         }
+        PathAnswer::Undecided { free_until, .. } if *free_until <= window.start() => {
+            "UNDECIDED from the start".to_owned()
+        }
         PathAnswer::Undecided { free_until, .. } => {
-            format!("UNDECIDED, free until t = {}{}", short(*free_until), exception(&let_go))
+            format!("UNDECIDED, free until t = {}{}", short(*free_until), exception(beginnings))
         }
     };
     let mut picture = Picture::new(headline, [window.start(), window.end()]);
     picture.up = Up::Z;
     picture.add_fact("bodies", bodies.len().to_string());
     picture.add_fact("pairs", format!("{} are checked", bodies.pairs().len()));
-    picture.add_fact("free until", short(answer.free_until()));
+    if answer.free_until() > window.start() {
+        picture.add_fact("free until", short(answer.free_until()));
+    }
     let mut meshes: Vec<(*const MeshTree, f64, usize)> = Vec::new();
     for body in 0..bodies.len() {
         let moving = bodies.moving(body);

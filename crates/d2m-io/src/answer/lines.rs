@@ -49,7 +49,10 @@ pub fn answer_lines(
             "SEPARATED".to_owned()
         }
         TimeOfContact::Undecided { clear_until } => {
-            line("certified", format!("no contact from {start} until {}", short_number(*clear_until)));
+            // Of no time nothing is said: the bodies may be in contact at the start.
+            let free = *clear_until > window.start();
+            let until = format!("no contact from {start} until {}", short_number(*clear_until));
+            line("certified", if free { until } else { "nothing".to_owned() });
             let then =
                 "the budget or the time was used up (or the cap that holds without them); more may decide";
             line("then", then.to_owned());
