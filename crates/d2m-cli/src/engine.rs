@@ -147,6 +147,10 @@ impl Pair {
         window: Window,
         wanted: FurtherArguments,
     ) -> Result<Answer, Failure> {
+        // Before the search, whose answer decides whether a clearance is computed.
+        if wanted.clearance {
+            let _accurate = self.moving([a, b], "clearance")?;
+        }
         let mut answer = if wanted.leaves() {
             let (found, took) = self.departure([a, b], window)?;
             let further = Further { departure: Some(found), clearance: None };

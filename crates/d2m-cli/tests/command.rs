@@ -101,6 +101,26 @@ fn a_budget_is_answered_honestly() {
     assert!((0.0..0.5).contains(&fields[2].parse::<f64>().unwrap()), "{text}");
 }
 
+/// A budget that ends at the start proves nothing, and nothing is called proven.
+#[test]
+fn nothing_is_certified_where_nothing_is_proven() {
+    let inside = ["toc", UNIT_BOX, UNIT_BOX, "--motion-a", "x=0.5,0,0;v=9,0,0", "--budget", "0"];
+    for start in ["report", "leave"] {
+        let text = stdout(&d2m(&[&inside[..], &["--start", start]].concat()));
+        assert!(text.starts_with("UNDECIDED") && text.contains("  certified   nothing\n"), "{text}");
+        assert!(!text.contains("never proven apart"), "{text}");
+    }
+}
+
+/// Also where no trial is separated: whether an option is refused is no matter of the answers.
+#[test]
+fn a_clearance_is_refused_before_the_search() {
+    let met = ["toc", UNIT_BOX, UNIT_BOX, "--motion-a", BOX_AT, "--clearance"];
+    for mode in ["capoeira", "paper"] {
+        refused(&[&met[..], &["--mode", mode]].concat(), &["--mode", "clearance"]);
+    }
+}
+
 #[test]
 fn no_query_takes_longer_than_its_limit() {
     let start = std::time::Instant::now();
