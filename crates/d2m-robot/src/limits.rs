@@ -44,9 +44,11 @@ pub struct LimitWarning {
     pub value: f64,
     /// The limit that is nearest.
     pub limit: f64,
-    /// Is it proven to be beyond? Otherwise the search ended there without a decision, which only numbers do that doubles hardly hold;
-    /// where it is beyond later, a second warning says so. No joint leaves its limits by more than 2⁻⁴⁸ of the
-    /// largest value from one point to the next without a warning of either kind.
+    /// Is it proven to be beyond? Otherwise the search ended there without a decision, which only numbers do
+    /// that doubles hardly hold; where it is beyond later, a second warning says so. No joint leaves its
+    /// limits by more than 2⁻⁴⁸ of the largest value from one point to the next, and 2⁻⁴⁹⁸, without a warning
+    /// of either kind; rates are known to 2⁻⁸⁰ of the largest position there divided by the time between the
+    /// points.
     pub is_certain: bool,
 }
 
