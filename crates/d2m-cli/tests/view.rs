@@ -62,6 +62,24 @@ fn a_page_says_only_what_is_proven() {
     );
 }
 
+/// Two bodies pass each other at a hundredth of their size, where a search that stops early calls it a contact.
+#[test]
+fn a_page_calls_no_early_stop_a_contact() {
+    let bodies = ["shape:gear?triangles=500", "shape:torus?triangles=600"];
+    let page = |mode: &str| {
+        let motion = ["--motion-a", "x=-3,2.02,0;v=6,0,0;w=0,0,1", "--mode", mode];
+        data(&stdout(&d2m(&[&["view", "--out", "-"], &bodies[..], &motion].concat())))
+    };
+    let status = |page: &serde_json::Value| {
+        let spans = page["spans"].as_array().unwrap().iter();
+        spans.map(|span| span["status"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(status(&page("accurate")), ["clear"]);
+    let early = page("capoeira");
+    assert_eq!(status(&early), ["clear", "undecided"]);
+    assert!(early["spans"][1]["text"].as_str().unwrap().contains("there may be no contact"));
+}
+
 #[test]
 fn stills_are_drawn_without_a_browser() {
     let folder = Folder::new("still");

@@ -1,6 +1,6 @@
 //! What an answer proves of spans of time.
 
-use d2m_bvh::{Contact, StartState, TimeOfContact, Window};
+use d2m_bvh::{Contact, Evidence, StartState, TimeOfContact, Window};
 use serde_json::{Value, json};
 
 /// What is proven of a span of time.
@@ -89,6 +89,17 @@ pub fn proven_spans(verdict: &TimeOfContact, window: Window) -> Vec<ProvenSpan> 
             let rest =
                 ProvenSpan::new(*clear_until, end, Holds::Undecided, "not decided: the budget ran out");
             clear_before(*clear_until).into_iter().chain([rest]).collect()
+        }
+        // Only that nothing meets before is proven.
+        TimeOfContact::Contact(Contact {
+            time_lo,
+            evidence: Evidence::Early,
+            start: StartState::Apart,
+            ..
+        }) => {
+            let text = "the search stopped early: there may be no contact";
+            let rest = ProvenSpan::new(*time_lo, end, Holds::Undecided, text);
+            clear_before(*time_lo).into_iter().chain([rest]).collect()
         }
         TimeOfContact::Contact(contact) => {
             let after = "after the first contact: not examined";
