@@ -66,3 +66,25 @@ fn a_pair_whose_clearance_was_not_decided_says_so() {
     );
     assert!(line.contains(ENDED) && width(&ended) > width(&found), "{line} {ended}");
 }
+
+/// What the budget leaves open is not said to come within a limit that it is beyond.
+#[test]
+fn pairs_that_are_not_decided_only_may_come_near() {
+    let folder = Folder::new("clearance-of-scenes");
+    let scene = r#"{"bodies": [{"name": "gear", "mesh": "shape:gear", "motion": {"x": [-3, 3.2, 0.1], "v": [4, 0, 0], "w": [0, 0, 5]}},
+        {"name": "ring", "mesh": "shape:torus"}]}"#;
+    let scene = folder.file("scene.json", scene);
+    // The two are 1.220702 apart, and some 1.220705 where the search begins.
+    let said =
+        |limit: &str, budget: &str| answered(&["clearance", &scene, "--below", limit, "--budget", budget]);
+    for (limit, budget, expected) in [
+        ("1.22", "1000000", "0 of all pairs come within 1.22\n"),
+        ("1.23", "1000000", "1 of all pairs come within 1.23\n"),
+        ("1.22", "1", "0 of all pairs come within 1.22, 1 more may\n"),
+        ("1.23", "1", "1 of all pairs come within 1.23\n"),
+    ] {
+        let text = said(limit, budget);
+        assert!(text.contains(expected), "{text}");
+        assert_eq!(text.contains(ENDED), budget == "1", "{text}");
+    }
+}

@@ -7,7 +7,7 @@ use crate::engine::{ClearanceAnswer, MIN_SEPARATION, Pair, number};
 use crate::failure::Failure;
 use crate::outcome::Outcome;
 use crate::output::{print_answer, printable, short};
-use crate::report::{body_lines, duration, feature_sentence, microseconds, vector};
+use crate::report::{body_lines, clearance_words, duration, feature_sentence, microseconds, vector};
 use crate::scene::{Scene, SceneBody};
 use crate::sizes::sizes_line;
 use crate::verification::{Bodies, Promise, Proof, joined};
@@ -84,10 +84,10 @@ fn run_scene(arguments: &ClearanceArguments, accuracy: f64) -> Result<Outcome, F
         format!("{answer}\n")
     } else {
         let line = |found: &PairClearance| {
-            let Clearance { lower, upper, time, .. } = found.clearance;
-            let [lower, upper, time] = [lower, upper, time].map(short);
+            let Clearance { lower, upper, time, status, .. } = found.clearance;
+            let (enclosure, time) = (clearance_words([lower, upper], status), short(time));
             let [a, b] = [found.a, found.b].map(|id| printable(name(id)));
-            format!("{a} \u{2013} {b}: [{lower}, {upper}] at t = {time}\n")
+            format!("{a} \u{2013} {b}: {enclosure} at t = {time}\n")
         };
         let mut text = match &nearest {
             None => "CLEARANCE: no pair is of interest\n".to_owned(),
@@ -101,7 +101,12 @@ fn run_scene(arguments: &ClearanceArguments, accuracy: f64) -> Result<Outcome, F
             }
         };
         if let (Some(limit), Some(near)) = (below, &near) {
-            let _ = writeln!(text, "  {} of all pairs come within {}", near.len(), short(limit));
+            let sure = near.iter().filter(|found| found.clearance.upper <= limit).count();
+            let open = match near.len() - sure {
+                0 => String::new(),
+                open => format!(", {open} more may"),
+            };
+            let _ = writeln!(text, "  {sure} of all pairs come within {}{open}", short(limit));
             text.extend(near.iter().map(|found| format!("  {}", line(found))));
         }
         if let Some(proof) = proof {
