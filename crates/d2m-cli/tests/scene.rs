@@ -65,3 +65,18 @@ fn bad_scenes_are_refused_with_their_place() {
     assert_eq!(answer.status.code(), Some(11));
     assert!(stdout(&answer).starts_with("SEPARATED"), "{}", stdout(&answer));
 }
+
+/// That no two bodies meet of which all are ignored is no proof of anything, and is said.
+#[test]
+fn a_scene_of_which_no_pair_is_checked_is_warned_of() {
+    let folder = Folder::new("no-pairs");
+    let scene = |ignored: &str| {
+        let bodies = r#"{"name": "a", "mesh": "shape:box"}, {"name": "b", "mesh": "shape:box"}"#;
+        folder.file("scene.json", &format!(r#"{{"bodies": [{bodies}], "ignore": [{ignored}]}}"#))
+    };
+    for command in ["scene", "clearance", "spans"] {
+        let run = d2m(&[command, &scene(r#"["a", "b"]"#)]);
+        assert!(stderr(&run).contains("of 2 bodies no pair is checked"), "{command}: {}", stderr(&run));
+        assert!(stderr(&d2m(&[command, &scene("")])).is_empty());
+    }
+}

@@ -46,7 +46,7 @@ impl Row {
 /// Runs the command.
 pub(crate) fn run(arguments: &SceneArguments) -> Result<Outcome, Failure> {
     let mut scene = Scene::read(&arguments.scene)?;
-    scene.warn_of_sizes(&named(&arguments.scene));
+    scene.warn(&named(&arguments.scene));
     if let Some(start) = arguments.start {
         scene = scene.with_start(start.into());
     }

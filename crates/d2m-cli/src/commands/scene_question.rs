@@ -35,7 +35,7 @@ impl SceneQuestion {
             return Err(Failure::at("--mode", "only accurate answers this question of a scene"));
         }
         let scene = Scene::read(Path::new(&arguments.a))?;
-        scene.warn_of_sizes(&arguments.a);
+        scene.warn(&arguments.a);
         let world = scene.world(options_of(query)?);
         let options = *world.options();
         Ok(Self { scene, world, options })

@@ -12,6 +12,7 @@ use crate::failure::Failure;
 use crate::load::{named, read};
 use crate::mesh_library::MeshLibrary;
 use crate::orientation::warn_of_json;
+use crate::output::note;
 use crate::unlike_sizes::warn_of_scene_sizes;
 use d2m::bvh::{QueryOptions, Start, Window};
 use d2m::{Body, BodyId, Group, World, WorldError};
@@ -68,8 +69,14 @@ impl Scene {
         Self { start, ..self }
     }
 
-    /// Warns where a body is probably in another unit; `file`: where the scene is.
-    pub(crate) fn warn_of_sizes(&self, file: &str) {
+    /// Warns where no pair is checked, and where a body is probably in another unit; `file`: where the scene is.
+    pub(crate) fn warn(&self, file: &str) {
+        if self.each_pair().next().is_none() {
+            let count = self.bodies.len();
+            note(&format!(
+                "d2m: warning: {file}: of {count} bodies no pair is checked: the answer says nothing"
+            ));
+        }
         warn_of_scene_sizes(file, self.bodies.iter().map(SceneBody::named_size));
     }
 
@@ -85,10 +92,15 @@ impl Scene {
 
     /// The pairs of bodies that are not ignored.
     pub(crate) fn pairs(&self) -> Vec<[usize; 2]> {
+        self.each_pair().collect()
+    }
+
+    fn each_pair(&self) -> impl Iterator<Item = [usize; 2]> {
         let group = |body: usize| self.bodies[body].group.as_deref();
-        let in_groups =
-            |[a, b]: [usize; 2], one: &str, other: &str| group(a) == Some(one) && group(b) == Some(other);
-        let is_ignored = |pair: [usize; 2]| {
+        let in_groups = move |[a, b]: [usize; 2], one: &str, other: &str| {
+            group(a) == Some(one) && group(b) == Some(other)
+        };
+        let is_ignored = move |pair: [usize; 2]| {
             let [a, b] = pair;
             self.ignored.iter().any(|ignored| match ignored {
                 Ignored::Pair(p, q) => [*p, *q] == pair || [*q, *p] == pair,
@@ -99,8 +111,8 @@ impl Scene {
             })
         };
         let count = self.bodies.len();
-        let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
-        pairs.filter(|&pair| !is_ignored(pair)).collect()
+        let pairs = (0..count).flat_map(move |a| (a + 1..count).map(move |b| [a, b]));
+        pairs.filter(move |&pair| !is_ignored(pair))
     }
 
     /// Is a contact at the start let go, of some pair?
