@@ -180,8 +180,7 @@ fn impacts_of(
     if hit.is_empty() {
         return Impacts { contacts: hit, momenta };
     }
-    let equations =
-        island.contacts.iter().copied().filter(|c| c.row.is_some_and(|row| row.equation.is_some()));
+    let equations = island.contacts.iter().copied().filter(|c| c.row.is_some_and(|row| row.is_equation()));
     let hit: Vec<ContactPoint> = hit.into_iter().chain(equations.copied()).collect();
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
     let start = |s: &Cow<'_, RigidBody>| {
