@@ -2,8 +2,8 @@
 
 use crate::ContactImpulse;
 
-/// Receives the impulse at each contact, in the order of time: of events when they happen, of resting contacts when their
-/// flights begin. Closures that take a [`ContactImpulse`] are listeners.
+/// Receives the impulse at each contact, in the order of time: those of events when they happen, those of
+/// resting contacts when their flights begin. Closures that take a [`ContactImpulse`] are listeners.
 ///
 /// A listener that panics ends the step as an error does, before the panic goes on: the simulation can be used again.
 ///

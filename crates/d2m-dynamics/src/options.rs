@@ -96,8 +96,8 @@ impl SimulationOptions {
         Ok(())
     }
 
-    /// Closing speed below which a contact neither bounces nor needs an event of its own: what gravity adds in two steps.
-    /// Without gravity, what crosses a thousandth of the gap in a step.
+    /// Closing speed below which a contact neither bounces nor needs an event of its own: the speed that
+    /// gravity adds in two steps. Without gravity, a thousandth of the gap in a step.
     pub(crate) fn resting_speed(&self) -> f64 {
         (2.0 * self.gravity.length() * self.step).max(1e-3 * self.gap / self.step)
     }

@@ -17,7 +17,7 @@ use glam::{DQuat, DVec3};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// What happened in a step.
+/// The report of a step.
 ///
 /// ```
 /// # use std::sync::Arc;

@@ -57,8 +57,8 @@ impl Body {
     /// ```
     ///
     /// # Errors
-    /// No part; a part without mass properties of its own (give the body [`Mass::Given`] and its merged mesh instead), or placed by numbers
-    /// that cannot be used.
+    /// No part; a part without mass properties of its own (give the body [`Mass::Given`] and its merged mesh
+    /// instead), or with a place that cannot be used.
     pub fn of_parts(name: impl Into<String>, parts: &[Part<'_>]) -> Result<Self, SimulationError> {
         let name = name.into();
         let bad = |name: &'static str, value: String| SimulationError::BadBody {

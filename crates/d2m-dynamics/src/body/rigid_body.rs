@@ -62,8 +62,8 @@ pub(crate) struct RigidBody {
     pub(crate) rounding: f64,
     /// No point of its mesh is nearer to the center than this; zero if the center does not lie in a cavity.
     pub(crate) cavity: f64,
-    /// No point of its mesh is nearer than this to the axes of the mesh frame through the center, as far as
-    /// [`AXES_REACH`] says.
+    /// No point of its mesh is nearer than this to the lines through the center along the axes of the mesh
+    /// frame, as far as [`AXES_REACH`] says.
     pub(crate) bores: [f64; 3],
     pub(crate) damping: Damping,
     pub(crate) groups: Groups,

@@ -71,8 +71,8 @@ pub(crate) struct Row {
 /// ```
 ///
 /// The first two are at most a gap in a step, or m τ/2 where a driven body turns into others. Where hardly
-/// any room is left the second is m τ, with the sliding along what turns, up to a part of the speeds of the
-/// points.
+/// any room is left the second is at least m τ, with the sliding along surfaces that turn, up to a part of
+/// the speeds of the points.
 pub(crate) fn select<'b>(
     found: &[&ContactPoint],
     span: Span,
@@ -105,8 +105,8 @@ pub(crate) fn select<'b>(
         let carried = spins.map(|spin| spin.clamp_length_max(drive));
         let led =
             if led_into(contact, carried, velocity) > 0.0 { 0.5 * tau * bend(contact, carried) } else { 0.0 };
-        // Where hardly any room is left all rotation counts: each flight would end at half of the last
-        // distance otherwise.
+        // Where hardly any room is left all rotation counts: otherwise each flight would end at half of the
+        // distance that there is.
         let turned = if d < LAST * gap { room_to_turn(contact, spins, velocity, tau) } else { 0.0 };
         let most = led.max(turned).max(gap / span.step);
         let target = if span.room == Room::Shared {

@@ -3,7 +3,7 @@
 use crate::BodyId;
 use glam::{BVec3, DVec3};
 
-/// What a joint leaves free.
+/// The motion that a joint leaves free.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -152,7 +152,8 @@ impl Spring {
     }
 }
 
-/// A joint of two bodies, or of one and the world, to be added by [`Simulation::add_joint`](crate::Simulation::add_joint).
+/// A joint of two bodies, or of one and the world. [`Simulation::add_joint`](crate::Simulation::add_joint)
+/// adds it.
 ///
 /// Its value is the angle by which b has turned against a about the axis, or the length by which it has moved
 /// along it; it is zero where the joint is added. Where b is the world, a body a that moves along the axis
@@ -180,7 +181,7 @@ impl Spring {
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Joint {
-    /// What it leaves free.
+    /// The motion that it leaves free.
     pub kind: JointKind,
     /// The first body.
     pub a: BodyId,

@@ -238,8 +238,8 @@ impl Simulation {
     /// dynamic one that was kinematic goes on with the velocity of its last flight; joints stay.
     ///
     /// # Errors
-    /// [`SimulationError::Intersecting`] if it intersects a body that it would meet; mass properties that are missing; a motion that does
-    /// not cover the present time. Nothing changes then.
+    /// [`SimulationError::Intersecting`] if it intersects a body that it would meet; missing mass properties;
+    /// a motion that does not cover the present time. Nothing changes then.
     ///
     /// # Panics
     /// If the body was removed.

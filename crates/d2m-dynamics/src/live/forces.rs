@@ -34,8 +34,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Adds a force that acts at a point over the next step, both in world axes, to those that act already: one through the center of mass
-    /// with the torque (point − center) × force. Wakes the body.
+    /// Adds a force that acts at a point over the next step, both in world axes, to those that act already: a
+    /// force through the center of mass with the torque (point − center) × force. Wakes the body.
     ///
     /// # Errors
     /// As [`Self::set_force`].
@@ -96,8 +96,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Adds an impulse that acts at a point, both in world axes: one at the center of mass with the angular impulse (point − center) ×
-    /// impulse. Wakes the body.
+    /// Adds an impulse that acts at a point, both in world axes: an impulse at the center of mass with the
+    /// angular impulse (point − center) × impulse. Wakes the body.
     ///
     /// # Errors
     /// As [`Self::apply_impulse`].

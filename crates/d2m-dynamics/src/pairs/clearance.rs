@@ -2,10 +2,12 @@
 //!
 //! **From spheres** about their centers, which move with constant velocities, however the bodies turn.
 //!
-//! **From a distance.** Let the bodies be at least d apart in poses (x, q). In other poses (x', q') a point is displaced by no more
-//! than |x' − x| + ρ 2 |q' − q|, with the radius ρ about the center x and of the quaternions ±q the nearer to q': the chord to an
-//! angle θ between rotations is 2 sin(θ/2) ≤ 4 sin(θ/4) = 2 |q' − q|. Of the displacements of the centers only the difference counts. From
-//! there on, flights of length τ with the velocities v and ω bring points closer by |v_b − v_a| τ + (ρ_a |ω_a| + ρ_b |ω_b|) τ at most.
+//! **From a distance.** Let the bodies be at least d apart in poses (x, q). In other poses (x', q') a point
+//! is displaced by no more than |x' − x| + ρ 2 |q' − q|, with the radius ρ about the center x, and with that
+//! of the quaternions ±q which is nearer to q': the chord to an angle θ between rotations is 2 sin(θ/2) ≤ 4
+//! sin(θ/4) = 2 |q' − q|. Of the displacements of the centers only the difference counts. From there on,
+//! flights of length τ with the velocities v and ω bring points closer by
+//! v_b − v_a| τ + (ρ_a |ω_a| + ρ_b |ω_b|) τ at most.
 //!
 //! **From a direction.** Take axes that turn with w about the center of a. A body with the angular velocity
 //! ω, whose center is D away and moves with V, has a point r whose coordinate along a direction n of these

@@ -18,6 +18,8 @@
 //! the axis in the middle of the flight, are convex functions of time and place. So they are largest at the
 //! start or the end of the flight, and at an end of the part of an edge that comes nearer than m to the
 //! places between z₀ and z₁. With the largest value r of their sum
+//!
+//! ```text
 //! distance ≥ min(m, c − r),      r = max (|p × n| + α |p|)
 //! ```
 //!
@@ -301,8 +303,9 @@ mod tests {
         distance(a, b, Solid::Surface).unwrap().upper
     }
 
-    /// Pins in rings, each of which turns or not, about its axis or almost, askew, off the middle, and on their way: nothing is shown that is
-    /// not so, and about the axis most of what is so. Where it is so for a part of the flight, that is shown up to some part.
+    /// Pins in rings that turn or do not, about their axis or almost so, askew, off the middle, and in
+    /// motion. Nothing is proven that is false, and for turns about the axis most of what is true is proven.
+    /// Where it is true for a part of the flight, it is proven up to some time.
     #[test]
     fn pins_in_rings_are_as_far_apart_as_is_shown() {
         let state = &mut KnuthRandom(5);

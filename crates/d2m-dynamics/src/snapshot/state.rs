@@ -361,7 +361,8 @@ mod tests {
         assert_eq!(simulation.snapshot(), snapshot);
     }
 
-    /// Time that has passed without steps is passed over at once, and where no number of steps leads on that is said.
+    /// Time that has passed without steps is skipped at once, and where no number of steps leads on an error
+    /// says so.
     #[test]
     fn steps_go_on_after_a_long_time() {
         let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();

@@ -67,9 +67,9 @@ impl Step<'_> {
     }
 
     /// The kinematic body and the body on which it presses, if the bodies that contacts connect with those of
-    /// these events are proven to have no motion with which they keep apart for as long as it takes to close
-    /// a gap. A kinematic body goes on in its present flight until that ends, and then by its motion: it may
-    /// turn back there.
+    /// these events are proven to have no motion with which they keep apart for as long as the kinematic body
+    /// takes to close a gap. A kinematic body goes on in its present flight until that ends, and then by its
+    /// motion: it may turn back there.
     fn proven_crushed(&mut self, time: f64, events: &[Event]) -> Option<[usize; 2]> {
         if !self.sim.bodies.iter().any(RigidBody::is_driven) {
             return None;
