@@ -92,7 +92,7 @@ pub(crate) fn solve(
     members.sort_unstable();
     members.dedup();
     let place = |body: usize| members.binary_search(&body).unwrap_or_default();
-    let mut states: Vec<Cow<'_, RigidBody>> = members.iter().map(|&i| Cow::Borrowed(&bodies[i])).collect();
+    let mut states: Vec<Cow<'_, RigidBody>> = members.iter().map(|&i| bodies[i].at(clock.now)).collect();
     let Impacts { contacts: hits, momenta: impacts } = impacts_of(&states, island, options, place);
     for (state, added) in states.iter_mut().zip(&impacts) {
         if *added != Momenta::default() && moves(state) {

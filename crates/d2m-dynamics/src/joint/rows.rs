@@ -233,11 +233,10 @@ impl Joined {
 
     /// Keeps the value where flights end: poses give it up to full turns, and flights give the number of
     /// these.
-    pub(crate) fn look(&mut self, bodies: &[RigidBody]) {
+    pub(crate) fn look(&mut self, pair: [&RigidBody; 2]) {
         if self.is_gone {
             return;
         }
-        let pair = self.bodies.map(|i| &bodies[i]);
         self.value = self.value(pair);
         self.looked = pair[0].time.max(pair[1].time);
     }
