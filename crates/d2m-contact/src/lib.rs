@@ -4,7 +4,7 @@
 //! ## Names
 //! - [`System`]: bodies ([`SolverBody`]) and the [`ContactPoint`]s between them; [`System::solve`] finds their impulses with an [`Accuracy`], among
 //!   more or less [`Company`], from a [`Start`]. [`System::present`] is what to go back to ([`Present`]).
-//! - [`ContactPoint`]: where two bodies touch, of a [`Material`]; with a [`JointRow`] it is a row of a joint. Each has its [`Law`].
+//! - [`ContactPoint`]: where two bodies touch, of a [`Material`]; with a [`JointRow`] it is a row of a [`JointPart`]. Each has its [`Law`].
 //! - [`impact`]: restitution, passed on from body to body, that adds no energy.
 //! - [`Squeeze`]: proofs that no motion keeps bodies apart, for contacts as [`ASKEW`], [`CROSSING`], [`LEVER`] and [`ROUNDED`] say.
 //! - [`Velocity`] and [`Momenta`] of a body, which [`add_impulses`] changes; [`tangents`] and [`extreme_eigenvalues`] are what a frame and masses are made of.
@@ -41,7 +41,7 @@ pub use law::Law;
 pub use momenta::Momenta;
 pub use moments::extreme_eigenvalues;
 pub use newton::Start;
-pub use point::{ContactPoint, JointRow, Material, add_impulses, tangents};
+pub use point::{ContactPoint, JointPart, JointRow, Material, add_impulses, tangents};
 pub use solve::LEFT_OVER;
 pub use solver_body::SolverBody;
 pub use system::{Present, System};

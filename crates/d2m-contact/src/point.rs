@@ -33,14 +33,40 @@ impl Material {
     }
 }
 
+/// What a row of a joint is about. Rates hold where a flight begins; whoever makes the rows corrects them until what they stand for holds
+/// where the flight ends.
+///
+/// ```
+/// use d2m_contact::JointPart;
+/// let across = JointPart::Equation { joint: 3, number: 0 };
+/// assert_ne!(across, JointPart::Value { joint: 3 });
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointPart {
+    /// A rate, and nothing beyond that.
+    Rate,
+    /// An equation of a joint: two points that stay together, or two axes that stay parallel.
+    Equation {
+        /// The joint's number.
+        joint: usize,
+        /// The number of the equation among those of the joint.
+        number: usize,
+    },
+    /// The value of a joint, an angle or a length, which limits, motors, springs and friction are about.
+    Value {
+        /// The joint's number.
+        joint: usize,
+    },
+}
+
 /// A row of a joint.
 ///
 /// ```
-/// use d2m_contact::{Accuracy, ContactPoint, JointRow, Law, Material, SolverBody, Start, System};
+/// use d2m_contact::{Accuracy, ContactPoint, JointPart, JointRow, Law, Material, SolverBody, Start, System};
 /// use glam::{DMat3, DVec3};
 /// // A motor that turns a wheel about the normal, with an impulse of no more than 3, to 2 radians a unit of time.
 /// let law = Law::Range { lo: -3.0, hi: 3.0, softness: 0.0 };
-/// let motor = JointRow { is_angular: true, law, pushing: 2.0, target: 2.0, equation: None, is_motor: true };
+/// let motor = JointRow { is_angular: true, law, pushing: 2.0, target: 2.0, part: JointPart::Rate, is_motor: true };
 /// let axle = ContactPoint::new([0, 1], [DVec3::ZERO; 2], DVec3::Z, Material::new(0.0, 0.0));
 /// let wheel = SolverBody { inverse_mass: 1.0, inverse_inertia: DMat3::IDENTITY, ..SolverBody::FIXED };
 /// let row = ContactPoint { row: Some(motor), ..axle };
@@ -58,10 +84,18 @@ pub struct JointRow {
     pub pushing: f64,
     /// That of the flight, which also takes back what the joint is off.
     pub target: f64,
-    /// The number of the joint and of its equation, whose rate follows from where the flight ends.
-    pub equation: Option<[usize; 2]>,
+    /// Which part of the joint it is about.
+    pub part: JointPart,
     /// Of a motor, whose impulses of a step add up.
     pub is_motor: bool,
+}
+
+impl JointRow {
+    /// Is it of an equation, which holds whatever acts on the bodies?
+    #[must_use]
+    pub const fn is_equation(&self) -> bool {
+        matches!(self.part, JointPart::Equation { .. })
+    }
 }
 
 /// A pair of closest features of two bodies, or a row of a joint, and the impulse between them. World axes.
@@ -173,8 +207,14 @@ impl ContactPoint {
         let [normal, arm] = tangents(angular / impulse);
         let (lo, hi) = (f64::NEG_INFINITY, f64::INFINITY);
         let law = Law::Range { lo, hi, softness: 0.0 };
-        let row =
-            JointRow { is_angular: false, law, pushing: 0.0, target: 0.0, equation: None, is_motor: false };
+        let row = JointRow {
+            is_angular: false,
+            law,
+            pushing: 0.0,
+            target: 0.0,
+            part: JointPart::Rate,
+            is_motor: false,
+        };
         let none = Self::new([body; 2], [arm * 0.5, arm * -0.5], normal, Material::new(0.0, 0.0));
         Some(Self { row: Some(row), impulse, ..none })
     }

@@ -5,7 +5,7 @@ use super::super::law::Law;
 use super::super::solver_body::SolverBody;
 use super::super::system::System;
 use super::{Descent, Ends, Round, Wide};
-use crate::point::{JointRow, Material, upright};
+use crate::point::{JointPart, JointRow, Material, upright};
 use crate::velocity::Velocity;
 use crate::{ContactPoint, tangents};
 use d2m_lanes::{InstructionSet, run_on};
@@ -40,7 +40,7 @@ fn drawn(state: &mut KnuthRandom, count: usize) -> (System, Vec<f64>) {
                     law,
                     pushing: 0.0,
                     target: 0.0,
-                    equation: None,
+                    part: JointPart::Rate,
                     is_motor: false,
                 };
                 contacts.push(ContactPoint {

@@ -232,8 +232,9 @@ impl Problem<'_> {
                 first_solved = Some(FirstSolved { residual, pulled, bodies, present, off });
             }
             let ends = Ends { joints: self.joints, states, span };
-            let missed = ends.miss(system, &found.contacts, place);
-            found.missed = missed.iter().map(|missed| missed.rate.abs()).fold(0.0, f64::max);
+            let missed = ends.miss(system, &found.contacts, &found.pushing, place);
+            let counted = missed.iter().filter(|missed| missed.counts);
+            found.missed = counted.map(|missed| missed.rate.abs()).fold(0.0, f64::max);
             let first = *uncorrected.get_or_insert(found.missed);
             found.diverges = found.missed > first;
             let is_far_off = brakes == Brakes::None && found.missed > FAR_OFF * first;
@@ -331,7 +332,7 @@ impl Problem<'_> {
             let spin = attempt.system.bodies[self.place(body)].velocity.angular;
             spin.cross(arm).length() * attempt.span.remaining > core::f64::consts::PI * arm.length()
         };
-        let equations = self.contacts.iter().filter(|c| c.row.is_some_and(|row| row.equation.is_some()));
+        let equations = self.contacts.iter().filter(|c| c.row.is_some_and(|row| row.is_equation()));
         equations.into_iter().any(|c| goes_round(c.a, c.arm_a) || goes_round(c.b, c.arm_b))
     }
 }

@@ -92,7 +92,7 @@ pub(crate) fn solve(
     members.sort_unstable();
     members.dedup();
     let place = |body: usize| members.binary_search(&body).unwrap_or_default();
-    let mut states: Vec<Cow<'_, RigidBody>> = members.iter().map(|&i| Cow::Borrowed(&bodies[i])).collect();
+    let mut states: Vec<Cow<'_, RigidBody>> = members.iter().map(|&i| bodies[i].at(clock.now)).collect();
     let Impacts { contacts: hits, momenta: impacts } = impacts_of(&states, island, options, place);
     for (state, added) in states.iter_mut().zip(&impacts) {
         if *added != Momenta::default() && moves(state) {
@@ -180,8 +180,7 @@ fn impacts_of(
     if hit.is_empty() {
         return Impacts { contacts: hit, momenta };
     }
-    let equations =
-        island.contacts.iter().copied().filter(|c| c.row.is_some_and(|row| row.equation.is_some()));
+    let equations = island.contacts.iter().copied().filter(|c| c.row.is_some_and(|row| row.is_equation()));
     let hit: Vec<ContactPoint> = hit.into_iter().chain(equations.copied()).collect();
     let inertia: Vec<(f64, DMat3)> = states.iter().map(|s| world_inertia(s)).collect();
     let start = |s: &Cow<'_, RigidBody>| {

@@ -9,6 +9,7 @@ use d2m_bvh::Posed;
 use d2m_contact::{Momenta, Velocity};
 use d2m_motion::{ConstantTwist, Pose, RigidMotion};
 use glam::{DMat3, DQuat, DVec3};
+use std::borrow::Cow;
 
 /// How far a tumbling body may turn in one flight, in radians, times the relative difference κ of its moments
 /// of inertia. The midpoint rule is the geodesic one: reversible, so its energy oscillates and does not
@@ -207,6 +208,16 @@ impl RigidBody {
         let speed = |body: &Self| if body.has_flown { body.shown_velocity() } else { body.velocity() };
         let (a, b) = (speed(self), speed(other));
         (a.linear - b.linear).length() + a.angular.length() * self.radius + b.angular.length() * other.radius
+    }
+
+    /// The body where its present flight leads until this time, with the momenta that it has. A kinematic body
+    /// goes on in its flight while others begin theirs.
+    pub(crate) fn at(&self, time: f64) -> Cow<'_, Self> {
+        if self.time == time || self.stands_still() {
+            return Cow::Borrowed(self);
+        }
+        let pose = self.pose_at(time);
+        Cow::Owned(Self { position: pose.translation, orientation: pose.rotation, time, ..self.clone() })
     }
 
     /// Moves the state along the flight to a time; forces change the momenta for the time between.

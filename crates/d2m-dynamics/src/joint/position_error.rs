@@ -3,7 +3,8 @@
 use crate::body::rigid_body::RigidBody;
 use crate::flight::rows::Span;
 use crate::joint::rows::Joined;
-use d2m_contact::{ContactPoint, System};
+use d2m_contact::{ContactPoint, JointPart, System};
+use glam::{DQuat, DVec3};
 use std::borrow::Cow;
 
 /// The ends of the flights of jointed bodies.
@@ -17,36 +18,74 @@ pub(crate) struct Ends<'s> {
 pub(crate) struct Missed {
     pub(crate) row: usize,
     pub(crate) rate: f64,
+    /// Does it keep the joint from being met? A limit that nothing leads beyond does not.
+    pub(crate) counts: bool,
+}
+
+/// A joint in a flight.
+struct Flown<'j> {
+    joined: &'j Joined,
+    number: usize,
+    starts: [(DVec3, DQuat); 2],
+    ends: [(DVec3, DQuat); 2],
+    /// The value at the start.
+    value: f64,
+    /// How fast the equations move away from what they should be at the end.
+    rates: Vec<f64>,
 }
 
 impl Ends<'_> {
+    /// The errors of all rows of joints, which have these rates so far.
     pub(crate) fn miss(
         &self,
         system: &System,
         contacts: &[ContactPoint],
+        pushing: &[f64],
         place: impl Fn(usize) -> usize,
     ) -> Vec<Missed> {
-        let tau = self.span.remaining;
         let mut missed = Vec::new();
-        let mut known: Option<(usize, Vec<f64>)> = None;
+        let mut known: Option<Flown<'_>> = None;
         for (row, contact) in contacts.iter().enumerate() {
-            let Some([number, equation]) = contact.row.and_then(|row| row.equation) else { continue };
-            let joined = &self.joints[number];
-            if known.as_ref().is_none_or(|known| known.0 != number) {
-                let bodies = [contact.a, contact.b].map(&place);
-                let starts = bodies.map(|k| (self.states[k].position, self.states[k].orientation));
-                let ends = bodies.map(|k| {
-                    let (state, v) = (&self.states[k], &system.bodies[k].velocity);
-                    (state.position + v.linear * tau, state.turned(v.angular, tau))
-                });
-                let aims = joined.aims(starts, tau, self.span.step);
-                let off = joined.offs(ends).into_iter().zip(aims).map(|(off, aim)| (off - aim) / tau);
-                known = Some((number, off.collect()));
-            }
-            if let Some((_, rates)) = &known {
-                missed.push(Missed { row, rate: rates[equation] });
-            }
+            let Some(of) = contact.row else { continue };
+            let (JointPart::Equation { joint, .. } | JointPart::Value { joint }) = of.part else { continue };
+            let flown = match known.take().filter(|known| known.number == joint) {
+                Some(flown) => flown,
+                None => self.fly(joint, [contact.a, contact.b].map(&place), system),
+            };
+            missed.push(match of.part {
+                JointPart::Equation { number, .. } => Missed { row, rate: flown.rates[number], counts: true },
+                JointPart::Rate | JointPart::Value { .. } => {
+                    let rate = system.rate(row);
+                    let lag = flown.mean_rate(contact.normal, rate, self.span.remaining) - rate;
+                    let wanted = of.pushing - lag;
+                    let counts = contact.impulse != 0.0 || rate < wanted;
+                    Missed { row, rate: pushing[row] - wanted, counts }
+                }
+            });
+            known = Some(flown);
         }
         missed
+    }
+
+    fn fly(&self, number: usize, bodies: [usize; 2], system: &System) -> Flown<'_> {
+        let tau = self.span.remaining;
+        let joined = &self.joints[number];
+        let starts = bodies.map(|k| (self.states[k].position, self.states[k].orientation));
+        let ends = bodies.map(|k| {
+            let (state, v) = (&self.states[k], &system.bodies[k].velocity);
+            (state.position + v.linear * tau, state.turned(v.angular, tau))
+        });
+        let aims = joined.aims(starts, tau, self.span.step);
+        let rates = joined.offs(ends).into_iter().zip(aims).map(|(off, aim)| (off - aim) / tau).collect();
+        let value = joined.value(bodies.map(|k| &*self.states[k]));
+        Flown { joined, number, starts, ends, value, rates }
+    }
+}
+
+impl Flown<'_> {
+    /// The mean rate of the value in the flight, along this direction, if this is the rate at its start.
+    fn mean_rate(&self, direction: DVec3, rate: f64, length: f64) -> f64 {
+        let sign = self.joined.axis(self.starts[0].1).dot(direction).signum();
+        sign * (self.joined.value_at(self.ends, self.value + sign * rate * length) - self.value) / length
     }
 }

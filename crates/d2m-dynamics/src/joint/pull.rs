@@ -32,7 +32,7 @@ const FAST: f64 = 0.5;
 /// The rows of each joint that hold points together, which stand one after the other.
 fn joints(contacts: &[ContactPoint]) -> impl Iterator<Item = Range<usize>> {
     let number = |contact: &ContactPoint| match contact.row {
-        Some(row) if !row.is_angular => row.equation.map(|[number, _]| number),
+        Some(row) if !row.is_angular && row.is_equation() => contact.joint(),
         _ => None,
     };
     let mut next = 0;

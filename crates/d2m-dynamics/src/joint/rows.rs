@@ -6,7 +6,7 @@ use crate::body::turning::rotation_vector;
 use crate::joint::description::{Joint, JointKind, Motor, MotorTarget};
 use crate::numbers::{FINITE, NOT_NEGATIVE, UNUSABLE, is_small};
 use crate::shown::{shown, shown_turn};
-use d2m_contact::{ContactPoint, JointRow, Law, Material, tangents};
+use d2m_contact::{ContactPoint, JointPart, JointRow, Law, Material, tangents};
 use d2m_feature::FeaturePair;
 use glam::{BVec3, DQuat, DVec3};
 
@@ -158,6 +158,11 @@ impl Joined {
         }
     }
 
+    /// The axis in the world, if this is the orientation of the first body.
+    pub(crate) fn axis(&self, first: DQuat) -> DVec3 {
+        first * self.axes[0]
+    }
+
     /// Does it connect bodies, rather than lock axes of one in the world?
     pub(crate) fn is_between_bodies(&self) -> bool {
         !matches!(self.joint.kind, JointKind::Locked { .. })
@@ -197,12 +202,15 @@ impl Joined {
     /// The value where the bodies are: the angle or the length.
     pub(crate) fn value(&self, bodies: [&RigidBody; 2]) -> f64 {
         let poses = bodies.map(|body| (body.position, body.orientation));
-        let [(xa, qa), (xb, qb)] = poses;
+        self.value_at(poses, self.value + self.turned(bodies))
+    }
+
+    /// The value in these poses: of angles, which poses give up to full turns, the one nearest to `about`.
+    pub(crate) fn value_at(&self, [(xa, qa), (xb, qb)]: [(DVec3, DQuat); 2], about: f64) -> f64 {
         match self.joint.kind {
             JointKind::Revolute => {
                 let off = rotation_vector(qb * (qa * self.turn).conjugate());
                 let angle = off.dot(qa * self.axes[0]);
-                let about = self.value + self.turned(bodies);
                 let turns = ((about - angle) / core::f64::consts::TAU).round();
                 angle + turns * core::f64::consts::TAU
             }
@@ -225,11 +233,10 @@ impl Joined {
 
     /// Keeps the value where flights end: poses give it up to full turns, and flights give the number of
     /// these.
-    pub(crate) fn look(&mut self, bodies: &[RigidBody]) {
+    pub(crate) fn look(&mut self, pair: [&RigidBody; 2]) {
         if self.is_gone {
             return;
         }
-        let pair = self.bodies.map(|i| &bodies[i]);
         self.value = self.value(pair);
         self.looked = pair[0].time.max(pair[1].time);
     }
@@ -279,7 +286,8 @@ impl Joined {
 
     /// The rows of the next flight. Impulses act where the bodies are now. The rates of equations are
     /// corrected until the flight ends where it should ([`Self::aims`]); that is the method SHAKE:
-    /// symplectic, so that energy does not drift.
+    /// symplectic, so that energy does not drift. So are those of the value, until they are its mean rates in
+    /// the flight: a slide that turns would move out of its limits otherwise, since bodies fly straight.
     pub(crate) fn rows(&self, number: usize, pair: [&RigidBody; 2], ahead: Ahead) -> Vec<ContactPoint> {
         let arms = [0, 1].map(|k| pair[k].orientation * self.arms[k]);
         let points = [0, 1].map(|k| pair[k].position + arms[k]);
@@ -294,8 +302,14 @@ impl Joined {
             made.arms[0] = arms[0] + (points[1] - points[0]);
         }
         let law = Law::Range { lo: f64::NEG_INFINITY, hi: f64::INFINITY, softness: 0.0 };
-        let equal =
-            JointRow { is_angular: false, law, pushing: 0.0, target: 0.0, equation: None, is_motor: false };
+        let equal = JointRow {
+            is_angular: false,
+            law,
+            pushing: 0.0,
+            target: 0.0,
+            part: JointPart::Rate,
+            is_motor: false,
+        };
         let (linear, angular) = self.directions(pair[0].orientation);
         for direction in linear {
             made.add(direction, equal);
@@ -305,8 +319,8 @@ impl Joined {
         }
         let count = made.rows.len();
         for (slot, row) in made.rows[..count].iter_mut().enumerate() {
-            let equation = |row: &JointRow| (!self.is_of_a_rate(row)).then_some([number, slot]);
-            row.row = row.row.map(|row| JointRow { equation: equation(&row), ..row });
+            let part = JointPart::Equation { joint: number, number: slot };
+            row.row = row.row.map(|row| if self.is_of_a_rate(&row) { row } else { JointRow { part, ..row } });
         }
         if matches!(self.joint.kind, JointKind::Revolute | JointKind::Prismatic) {
             self.along(&mut made, axis, self.value(pair), ahead);
@@ -317,12 +331,13 @@ impl Joined {
     /// Limits, spring, motor and friction of the value.
     fn along(&self, made: &mut Made<'_>, axis: DVec3, value: f64, ahead: Ahead) {
         let is_angular = self.joint.kind == JointKind::Revolute;
+        let part = JointPart::Value { joint: made.number };
         let row = |law: Law, pushing: f64, target: f64| JointRow {
             is_angular,
             law,
             pushing,
             target,
-            equation: None,
+            part,
             is_motor: false,
         };
         let h = ahead.length;

@@ -134,9 +134,10 @@ impl Step<'_> {
                 continue;
             }
             group.joints.insert(place, number);
-            joined.look(&sim.bodies);
+            let pair = joined.bodies.map(|i| sim.bodies[i].at(time));
+            joined.look([&pair[0], &pair[1]]);
             let ahead = Ahead { spent: self.spent.get(&number).copied().unwrap_or_default(), ..ahead };
-            group.contacts.extend(joined.rows(number, joined.bodies.map(|i| &sim.bodies[i]), ahead));
+            group.contacts.extend(joined.rows(number, [&pair[0], &pair[1]], ahead));
             let is_new =
                 |i: &usize| !group.is_member[*i] && sim.bodies[*i].is_dynamic() && !sim.bodies[*i].held;
             next.extend(joined.bodies.into_iter().filter(is_new));

@@ -171,7 +171,7 @@ impl<'s> Step<'s> {
         }
         let sim = &mut *self.sim;
         for joined in &mut sim.joints {
-            joined.look(&sim.bodies);
+            joined.look(joined.bodies.map(|i| &sim.bodies[i]));
         }
         self.resolve(self.start, awake, Occasion::Start)?;
         self.solve_expected(self.start)?;
