@@ -28,7 +28,8 @@ fn carried(simulation: &mut Simulation, shape: &str, rate: f64) -> BodyId {
 
 /// How far a body is from where it is held at the start, as seen from the hub.
 fn off(simulation: &Simulation, hub: BodyId, body: BodyId, held: DVec3) -> f64 {
-    let seen = simulation.orientation(hub).conjugate() * (simulation.position(body) - simulation.position(hub));
+    let seen =
+        simulation.orientation(hub).conjugate() * (simulation.position(body) - simulation.position(hub));
     (seen - held).length()
 }
 
