@@ -15,6 +15,7 @@
 //!
 //! ## Motions and scenes
 //! - [`read_motion`]: the motion of a JSON file; [`check_keyframes`]: do its spans meet, for a body of this size?
+//!   [`pose_at_rest`]: of a body that does not move.
 //! - [`SceneFile`], [`SceneEntry`], [`ScenePair`] and [`SceneTerms`]: scenes; [`parse_scale`] and [`parse_start`]: keys of them.
 //!
 //! ## Files of any kind
@@ -61,7 +62,7 @@ pub use mesh::{
     Merging, MeshFormat, MeshReport, PolygonCounts, Precision, ReadMesh, ReadOptions, Unit, UnknownUnit,
     UpAxis, parse_mesh, read_mesh, read_mesh_with,
 };
-pub use motion::{check_keyframes, read_motion};
+pub use motion::{check_keyframes, pose_at_rest, read_motion};
 pub use scene::{SceneEntry, SceneFile, parse_scale};
 pub use scene_pair::{ScenePair, parse_start};
 pub use scene_terms::SceneTerms;
