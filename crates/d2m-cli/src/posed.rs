@@ -82,7 +82,8 @@ impl PosedBodies {
                 let (option, pose) =
                     [("--pose-a", 0), ("--pose-b", 1)].map(|(o, i)| (o, self.both[i].pose))[body.min(1)];
                 let [x, at] = [pose.translation, pose.at].map(|v| format!("{:?}", v.to_array()));
-                Failure::at(option, format!("x = {x}, at = {at}: lengths above 1e100 cannot be used"))
+                let longest = QueryError::LONGEST_AT_REST;
+                Failure::at(option, format!("x = {x}, at = {at}: lengths above {longest:e} cannot be used"))
             }
             other => Failure::Input(other.to_string()),
         }
