@@ -16,7 +16,7 @@
 //! ## Motions and scenes
 //! - [`read_motion`]: the motion of a JSON file; [`check_keyframes`]: do its spans meet, for a body of this size?
 //!   [`pose_at_rest`]: of a body that does not move.
-//! - [`SceneFile`], [`SceneEntry`], [`ScenePair`] and [`SceneTerms`]: scenes; [`parse_scale`] and [`parse_start`]: keys of them.
+//! - [`SceneFile`], [`SceneEntry`], [`ScenePair`] and [`SceneTerms`]: scenes; [`parse_scale`]: a key of them.
 //!
 //! ## Files of any kind
 //! [`read_bytes`] and [`read_unsized`]; [`parse_json`] with [`UniqueKeys`], [`json_fault`]; [`excerpt`] and
@@ -64,7 +64,7 @@ pub use mesh::{
 };
 pub use motion::{check_keyframes, pose_at_rest, read_motion};
 pub use scene::{SceneEntry, SceneFile, parse_scale};
-pub use scene_pair::{ScenePair, parse_start};
+pub use scene_pair::ScenePair;
 pub use scene_terms::SceneTerms;
 pub use text::{excerpt, short_value};
 pub use write::{glb_bytes, obj_text, ply_bytes};
