@@ -24,7 +24,7 @@ use glam::DVec3;
 /// # let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// # let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 /// # let tree = MeshTree::new(TriMesh::try_new(vertices.clone(), faces.clone())?);
-/// use d2m_bvh::{Evidence, Moving, QueryOptions, StartState, Window, time_of_contact};
+/// use d2m_bvh::{Contact, Evidence, Moving, QueryOptions, StartState, Window, time_of_contact};
 /// # use d2m_motion::ConstantTwist;
 /// # // Falls by 4 from a height of 2 onto the tip of the other one, which is at height 1: they meet at 0.25.
 /// # let falling = ConstantTwist::REST.with_position(DVec3::Z * 2.0).with_linear_velocity(DVec3::Z * -4.0);
@@ -33,7 +33,7 @@ use glam::DVec3;
 /// let contact = answer.contact().expect("they meet");
 /// assert!(contact.time_lo <= 0.25 && contact.time_hi - contact.time_lo < 1e-9); // in the motions' unit of time
 /// assert!(contact.evidence >= Evidence::Near && contact.start == StartState::Apart);
-/// assert!(0.0 < contact.separation && contact.separation <= 3.3 * contact.tolerance); // in the meshes' unit of length
+/// assert!(0.0 < contact.separation && contact.separation <= Contact::MOST_LEFT * contact.tolerance); // in the meshes' unit of length
 /// // In the world: from A to B, on A and on B.
 /// assert!((contact.normal - DVec3::NEG_Z).length() < 1e-9 && (contact.closing_speed - 4.0).abs() < 1e-9);
 /// assert!((contact.point_a - contact.point_b).length() < 1e-9 && (contact.point_b - DVec3::Z).length() < 1e-9);
@@ -50,7 +50,7 @@ pub struct Contact {
     pub time_hi: f64,
     /// What is proven of the meeting.
     pub evidence: Evidence,
-    /// Separation left at `time_lo`: a distance above `min_separation` by at most 3.3 `tolerance`, 0 when the surfaces
+    /// Separation left at `time_lo`: a distance above `min_separation` by at most [`Self::MOST_LEFT`] tolerances, 0 when the surfaces
     /// cross at the start. With [`Mode::Capoeira`](crate::Mode::Capoeira) as large as the boxes of the two triangles.
     ///
     /// It is the distance of the reported triangles, to rounding, so the bodies are at most that far apart. Others may be nearer
@@ -84,6 +84,12 @@ pub struct Contact {
     /// Of a query with [`Start::Leave`](crate::Start::Leave): when the bodies had parted before.
     #[cfg_attr(feature = "serde", serde(default))]
     pub left: Option<TimeBracket>,
+}
+
+impl Contact {
+    /// What a search leaves above `min_separation` at most, in tolerances. The pair that ends it is within 2.5 of them when
+    /// it is found (L + δ + γ in docs/theory/engine.md); the rest is for times that round to before that.
+    pub const MOST_LEFT: f64 = 3.3;
 }
 
 /// A span of time in which something happens.

@@ -12,6 +12,7 @@ pub(crate) use moving::{
 pub(crate) use scenes::{RobotArguments, SceneArguments, SimulateArguments};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use d2m_io::MeshFormat;
 use std::path::PathBuf;
 
 /// Certified continuous collision detection: when do two moving rigid bodies first touch?
@@ -139,7 +140,11 @@ pub(crate) struct ManArguments {
 const MESH_OR_SCENE_HELP: &str =
     "Mesh, as for d2m toc, or a scene (.json, as for d2m scene) in place of A and B";
 const SECOND_HELP: &str = "Second mesh; none beside a scene";
-const MESH_HELP: &str = "Mesh file (.obj, .stl, .ply, .off, .gltf, .glb, .dae, .3mf, a saved .d2mtree) or built-in shape such as shape:gear?triangles=5000";
+
+fn mesh_help() -> String {
+    let files = MeshFormat::EXTENSIONS;
+    format!("Mesh file ({files}), saved tree (.d2mtree) or built-in shape such as shape:gear?triangles=5000")
+}
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -159,9 +164,9 @@ Examples:
   d2m batch A.obj B.obj --trials trials.csv --out results.csv --threads 8
   d2m batch A.obj B.obj --trials trials.jsonl --out results.csv --resume")]
 pub(crate) struct BatchArguments {
-    #[arg(value_name = "A", help = MESH_HELP)]
+    #[arg(value_name = "A", help = mesh_help())]
     pub(crate) a: String,
-    #[arg(value_name = "B", help = MESH_HELP)]
+    #[arg(value_name = "B", help = mesh_help())]
     pub(crate) b: String,
     /// Trials, CSV or JSON lines; - for standard input
     #[arg(long, value_name = "T.csv")]
@@ -263,7 +268,7 @@ Example:
   d2m tree bunny.obj --out bunny.d2mtree
   d2m toc bunny.d2mtree shape:gear --motion-a 'x=-3,0,0;v=4,0,0'")]
 pub(crate) struct TreeArguments {
-    #[arg(value_name = "A", help = MESH_HELP)]
+    #[arg(value_name = "A", help = mesh_help())]
     pub(crate) mesh: String,
     /// File to write, with the extension .d2mtree; - for standard output
     #[arg(long, value_name = "A.d2mtree")]
@@ -336,7 +341,7 @@ Examples:
   d2m info 'shape:gear?teeth=24' --glb gear.glb
   d2m info --shapes")]
 pub(crate) struct InfoArguments {
-    #[arg(value_name = "A", help = MESH_HELP, required_unless_present = "shapes")]
+    #[arg(value_name = "A", help = mesh_help(), required_unless_present = "shapes")]
     pub(crate) mesh: Option<String>,
     #[command(flatten)]
     pub(crate) size: SizeArgument,
@@ -373,7 +378,7 @@ pub(crate) struct ViewArguments {
     #[arg(value_name = "A")]
     pub(crate) a: String,
     /// The second mesh
-    #[arg(value_name = "B", help = MESH_HELP)]
+    #[arg(value_name = "B", help = mesh_help())]
     pub(crate) b: Option<String>,
     /// Page to write; - for standard output
     #[arg(long, value_name = "view.html", required_unless_present = "png")]

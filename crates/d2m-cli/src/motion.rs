@@ -8,7 +8,7 @@ use d2m::motion::{AnyMotion, ConstantTwist, CoveredMotion};
 use std::path::Path;
 
 /// Reads `x=…;q=…;v=…;w=…` or `@file.json`; `option` names the place in messages.
-fn parse_motion(option: &str, text: &str) -> Result<AnyMotion, Failure> {
+pub(crate) fn parse_motion(option: &str, text: &str) -> Result<AnyMotion, Failure> {
     let Some(file) = text.strip_prefix('@') else {
         if let Some(hint) = file_hint(text) {
             return Err(Failure::at(option, hint));
@@ -40,7 +40,7 @@ pub(crate) fn parse_motions(window: &str, motions: [&str; 2]) -> Result<(Window,
 }
 
 /// What someone means who gives the name of a file without an @.
-pub(crate) fn file_hint(text: &str) -> Option<String> {
+fn file_hint(text: &str) -> Option<String> {
     let path = Path::new(text);
     let is_json = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
     let is_file = !text.contains('=') && (is_json || path.is_file());

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::inputs;
+use d2m_io::MeshFormat;
 pub(crate) use d2m_io::short_number as short;
 use flate2::Compression;
 use flate2::write::GzEncoder;
@@ -130,7 +131,7 @@ impl Output {
         if let Self::File(path) = &self
             && let Some(extension) = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase)
             && !extensions.contains(&extension.as_str())
-            && KINDS.contains(&extension.as_str())
+            && (MeshFormat::from_path(path).is_some() || KINDS.contains(&extension.as_str()))
         {
             let reason = format!("{option} writes a file of another kind: expected .{}", extensions[0]);
             return Err(Failure::at(path.display(), reason));
@@ -196,10 +197,8 @@ impl core::fmt::Display for Output {
     }
 }
 
-/// Extensions by which files are known: one of another kind of file is a slip.
-const KINDS: [&str; 14] = [
-    "obj", "stl", "ply", "off", "gltf", "glb", "dae", "3mf", "d2mtree", "html", "htm", "png", "json", "jsonl",
-];
+/// Extensions by which files other than those of meshes are known: one of another kind of file is a slip.
+const KINDS: [&str; 6] = ["d2mtree", "html", "htm", "png", "json", "jsonl"];
 
 /// Refuses two results in one file, of which the first would be lost.
 pub(crate) fn require_distinct<'a>(outputs: impl IntoIterator<Item = &'a Output>) -> Result<(), Failure> {

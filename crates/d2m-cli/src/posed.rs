@@ -2,17 +2,14 @@
 
 use crate::arguments::{PosedArguments, SolidArguments};
 use crate::engine::{choose_solid, read_radii};
-use crate::failure::{Failure, parse_json};
-use crate::load::read;
-use crate::motion::file_hint;
-use crate::orientation::{warn_of_json, warn_of_text};
+use crate::failure::Failure;
+use crate::motion::parse_motion;
 use crate::output::printable;
 use crate::sizes::{load_both, sizes_line};
 use crate::unlike_sizes::warn_of_sizes;
 use d2m::bvh::{MeshTree, Posed, QueryError, Solid};
-use d2m::motion::{ConstantTwist, Pose};
-use glam::DVec3;
-use std::path::Path;
+use d2m::motion::Pose;
+use d2m_io::pose_at_rest;
 
 /// A tree in a pose, with the name that the user gave it.
 pub(crate) struct Body {
@@ -85,7 +82,8 @@ impl PosedBodies {
                 let (option, pose) =
                     [("--pose-a", 0), ("--pose-b", 1)].map(|(o, i)| (o, self.both[i].pose))[body.min(1)];
                 let [x, at] = [pose.translation, pose.at].map(|v| format!("{:?}", v.to_array()));
-                Failure::at(option, format!("x = {x}, at = {at}: lengths above 1e100 cannot be used"))
+                let longest = QueryError::LONGEST_AT_REST;
+                Failure::at(option, format!("x = {x}, at = {at}: lengths above {longest:e} cannot be used"))
             }
             other => Failure::Input(other.to_string()),
         }
@@ -94,33 +92,6 @@ impl PosedBodies {
 
 /// Reads `x=…;q=…[;at=…]` or `@file.json` with these keys.
 fn parse_pose(option: &str, text: &str) -> Result<Pose, Failure> {
-    let (place, motion): (&str, ConstantTwist) = match text.strip_prefix('@') {
-        None => {
-            if let Some(hint) = file_hint(text) {
-                return Err(Failure::at(option, hint));
-            }
-            let pose = text.parse().map_err(|error| Failure::at(option, error))?;
-            warn_of_text(option, text);
-            (option, pose)
-        }
-        Some("") => return Err(Failure::at(option, "@ needs the name of a file")),
-        Some(file) => {
-            let bytes = read(Path::new(file))?;
-            let pose = parse_json(file, &bytes)?;
-            if let Ok(value) = serde_json::from_slice(&bytes) {
-                warn_of_json(file, &value);
-            }
-            (file, pose)
-        }
-    };
-    for (key, velocity) in [("v", motion.linear_velocity()), ("w", motion.angular_velocity())] {
-        if velocity != DVec3::ZERO {
-            let value = velocity.to_array();
-            return Err(Failure::at(
-                place,
-                format!("{key} is {value:?}: a pose has x, q and at, but no velocity"),
-            ));
-        }
-    }
-    Ok(Pose { rotation: motion.orientation(), translation: motion.position(), at: motion.at() })
+    let motion = parse_motion(option, text)?;
+    pose_at_rest(&motion).map_err(|error| Failure::at(text.strip_prefix('@').unwrap_or(option), error))
 }

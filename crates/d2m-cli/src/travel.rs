@@ -1,7 +1,7 @@
 //! How far bodies go and turn.
 
 use crate::output::{digits, note};
-use d2m::bvh::Window;
+use d2m::bvh::{QueryError, Window};
 use d2m::interval::Interval;
 use d2m::motion::{AnyMotion, RigidMotion};
 use std::f64::consts::TAU;
@@ -53,14 +53,11 @@ impl Travel {
     }
 }
 
-/// Turns from which on queries refuse a motion, 2⁴⁰.
-const REFUSED: f64 = 1_099_511_627_776.0;
-
 impl Travel {
     /// Does the body turn more than once? Often degrees were meant.
     pub(crate) fn turns_far(self) -> bool {
         // Queries refuse the largest ones.
-        self.turns_more_than_once() && self.turn < REFUSED
+        self.turns_more_than_once() && self.turn < QueryError::MOST_ANGLE
     }
 
     pub(crate) fn turns_more_than_once(self) -> bool {

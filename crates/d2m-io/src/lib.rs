@@ -15,7 +15,8 @@
 //!
 //! ## Motions and scenes
 //! - [`read_motion`]: the motion of a JSON file; [`check_keyframes`]: do its spans meet, for a body of this size?
-//! - [`SceneFile`], [`SceneEntry`], [`ScenePair`] and [`SceneTerms`]: scenes; [`parse_scale`] and [`parse_start`]: keys of them.
+//!   [`pose_at_rest`]: of a body that does not move.
+//! - [`SceneFile`], [`SceneEntry`], [`ScenePair`] and [`SceneTerms`]: scenes; [`parse_scale`]: a key of them.
 //!
 //! ## Files of any kind
 //! [`read_bytes`] and [`read_unsized`]; [`parse_json`] with [`UniqueKeys`], [`json_fault`]; [`excerpt`] and
@@ -61,9 +62,9 @@ pub use mesh::{
     Merging, MeshFormat, MeshReport, PolygonCounts, Precision, ReadMesh, ReadOptions, Unit, UnknownUnit,
     UpAxis, parse_mesh, read_mesh, read_mesh_with,
 };
-pub use motion::{check_keyframes, read_motion};
+pub use motion::{check_keyframes, pose_at_rest, read_motion};
 pub use scene::{SceneEntry, SceneFile, parse_scale};
-pub use scene_pair::{ScenePair, parse_start};
+pub use scene_pair::ScenePair;
 pub use scene_terms::SceneTerms;
 pub use text::{excerpt, short_value};
 pub use write::{glb_bytes, obj_text, ply_bytes};

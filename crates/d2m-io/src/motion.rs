@@ -1,8 +1,9 @@
 //! Files of motions.
 
-use crate::{IoError, parse_json, read_bytes};
+use crate::{IoError, Place, parse_json, read_bytes};
 use d2m_bvh::TriMesh;
-use d2m_motion::{AnyMotion, MotionError};
+use d2m_motion::{AnyMotion, MotionError, Pose};
+use glam::DVec3;
 use std::path::Path;
 
 /// The motion of a JSON file: a constant twist, keyframes or a chain of joints, in the forms of [`AnyMotion`].
@@ -46,4 +47,31 @@ pub fn check_keyframes(motion: &AnyMotion, mesh: &TriMesh) -> Result<(), MotionE
         AnyMotion::Keyframes(keyframes) => keyframes.check_size(mesh.size()),
         _ => Ok(()),
     }
+}
+
+/// The pose of a body at rest, which texts state as a motion without velocities.
+///
+/// ```
+/// use d2m_motion::{AnyMotion, ConstantTwist};
+/// let stated = |text: &str| text.parse::<ConstantTwist>().map(AnyMotion::from);
+/// assert_eq!(d2m_io::pose_at_rest(&stated("x=1,2,3")?)?.translation.z, 3.0);
+/// let fault = d2m_io::pose_at_rest(&stated("v=1,0,0")?).unwrap_err().to_string();
+/// assert_eq!(fault, "v is [1.0, 0.0, 0.0]: a pose has x, q and at, but no velocity");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`IoError::Content`] for a motion with velocities, or of another kind than a constant twist.
+pub fn pose_at_rest(motion: &AnyMotion) -> Result<Pose, IoError> {
+    let fault = |reason| Err(IoError::Content { place: Place::default(), reason });
+    let AnyMotion::ConstantTwist(motion) = motion else {
+        return fault("a pose has x, q and at, and no course over time".to_owned());
+    };
+    for (key, velocity) in [("v", motion.linear_velocity()), ("w", motion.angular_velocity())] {
+        if velocity != DVec3::ZERO {
+            let value = velocity.to_array();
+            return fault(format!("{key} is {value:?}: a pose has x, q and at, but no velocity"));
+        }
+    }
+    Ok(Pose { rotation: motion.orientation(), translation: motion.position(), at: motion.at() })
 }

@@ -99,15 +99,8 @@ impl ScenePair {
     }
 }
 
-/// The value of a key `start`: `"report"` or `"leave"`; `None` without a value.
-///
-/// ```
-/// assert_eq!(d2m_io::parse_start(Some(&serde_json::json!("leave"))), Ok(Some(d2m_bvh::Start::Leave)));
-/// ```
-///
-/// # Errors
-/// A sentence with the value: it is neither word.
-pub fn parse_start(value: Option<&Value>) -> Result<Option<Start>, String> {
+/// The value of a key `start`: `"report"` or `"leave"`; `None` without a value. An error is a sentence with the value.
+pub(crate) fn parse_start(value: Option<&Value>) -> Result<Option<Start>, String> {
     match value {
         None => Ok(None),
         Some(Value::String(word)) if word == "report" => Ok(Some(Start::Report)),

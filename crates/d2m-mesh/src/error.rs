@@ -66,7 +66,7 @@ pub enum QueryError {
         body: usize,
     },
     /// The motion is not finite over the window, or leaves the range in which errors can be bounded: lengths and the
-    /// reach of the query stay below 2¹⁰⁰⁰, the angle since the reference time below 2⁴⁰ rad. A turn by less than 2⁻⁹⁰⁰ rad
+    /// reach of the query stay below 2¹⁰⁰⁰, the angle since the reference time below [`Self::MOST_ANGLE`]. A turn by less than 2⁻⁹⁰⁰ rad
     /// over the window must not have begun so long ago that it adds up to 2⁻⁶⁴ rad. A motion may not go so far or so
     /// fast that its rounding alone exceeds the bodies, what is between them at the start, and the tolerance of the options: from
     /// some 10¹³ times all of these in one window.
@@ -85,8 +85,11 @@ pub enum QueryError {
         /// The times of the motion and of the window.
         outside: OutsideDomain,
     },
-    /// The pose is not finite, its quaternion is zero, or lengths exceed 1e100.
-    #[error("pose of body {body} is not finite, has a zero quaternion or exceeds 1e100")]
+    /// The pose is not finite, its quaternion is zero, or lengths exceed [`Self::LONGEST_AT_REST`].
+    #[error(
+        "pose of body {body} is not finite, has a zero quaternion or exceeds {:e}",
+        Self::LONGEST_AT_REST
+    )]
     BadPose {
         /// 0 for the first body, 1 for the second.
         body: usize,
@@ -101,4 +104,13 @@ pub enum QueryError {
         /// Triangle of the second body.
         triangle_b: u32,
     },
+}
+
+impl QueryError {
+    /// Most radians, 2⁴⁰, between the reference time of a motion and the window: poses are proven for less than 2⁵⁰, and
+    /// sub-windows of a third of a radian are then long against the resolution of offsets.
+    pub const MOST_ANGLE: f64 = 1_099_511_627_776.0;
+
+    /// Longest length of poses and bodies at rest: squares and cubes of longer ones could overflow.
+    pub const LONGEST_AT_REST: f64 = 1e100;
 }

@@ -9,7 +9,8 @@
 //! - [`TriMesh`], from and to [`MeshArrays`]; [`MAX_COORDINATE`] bounds its numbers. [`Topology`] (with its
 //!   [`Edge`]s) and [`Validation`] say what kind of mesh it is, [`MeshParts`] and [`MeshPart`] which parts
 //!   hold each other.
-//! - [`MassProperties`] of a closed mesh: mass, center of mass and inertia ([`MassError`]).
+//! - [`MassProperties`] of a closed mesh: mass, center of mass and inertia ([`MassError`]); [`PrincipalAxes`] of a
+//!   symmetric matrix.
 //! - [`MeshTree`]: the tree of boxes. [`EnclosingSphere`]: the smallest sphere about points.
 //!
 //! ## Two bodies at rest
@@ -67,7 +68,7 @@ pub use enclosing_sphere::EnclosingSphere;
 pub use error::QueryError;
 pub use faces::Faces;
 pub use glam;
-pub use mass::{MassError, MassProperties};
+pub use mass::{MassError, MassProperties, PrincipalAxes};
 pub use mesh::{DisjointSets, Edge, MAX_COORDINATE, MeshArrays, MeshError, Topology, TriMesh, Validation};
 pub use meter::{Exhausted, Meter, Stop};
 pub use nearest_point::Simplex;

@@ -20,6 +20,9 @@ pub(crate) struct Enclosed {
 }
 
 impl Enclosed {
+    /// Any number.
+    pub(crate) const ANY: Self = Self { center: DoubleDouble::ZERO, radius: f64::INFINITY };
+
     pub(crate) fn hull(self, other: Self) -> Self {
         let center = DoubleDouble::from_f64(0.5 * self.center.hi + 0.5 * other.center.hi);
         let reach = |e: Self| {

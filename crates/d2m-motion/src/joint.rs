@@ -244,9 +244,8 @@ impl Joint {
             let moved = Kinematics { position, position_tail, linear: rate, linear_rate: second, ..place };
             return moved.with_rotation(turn, turn_radius);
         }
-        let (sin, cos) = sin_cos_of(over.value.center);
-        let spin = Spin { omega: data.axis, speed: 1.0, axis: data.axis }.rotation_of(sin, cos);
-        let spin_radius = if sin.is_finite() { up(over.value.radius + 64.0 * UNIT) } else { f64::INFINITY };
+        let (spin, spin_error) = spin_about(data.axis, over.value.center);
+        let spin_radius = up(over.value.radius + spin_error);
         let turning = Kinematics { angular: rate, angular_rate: second, ..place };
         if data.orientation.is_identity() {
             return turning.with_rotation(spin, spin_radius);
@@ -283,11 +282,8 @@ impl Joint {
             let position_spread = (place.position + along(radius)).radius;
             return SpanMotion { position, position_spread, linear: rate, ..place };
         }
-        let (sin, cos) = sin_cos_of(center);
-        let spin = Spin { omega: data.axis, speed: 1.0, axis: data.axis }.rotation_of(sin, cos);
-        let spin_radius =
-            |radius: f64| if sin.is_finite() { up(radius + 64.0 * UNIT) } else { f64::INFINITY };
-        let (middle, whole) = (spin_radius(over.middle_radius), spin_radius(radius));
+        let (spin, spin_error) = spin_about(data.axis, center);
+        let (middle, whole) = (up(over.middle_radius + spin_error), up(radius + spin_error));
         let (rotation, rotation_radius, rotation_spread) = if data.orientation.is_identity() {
             (spin, middle, whole)
         } else {
@@ -310,18 +306,19 @@ pub(crate) enum Wanted {
     Rates,
 }
 
-/// Sine and cosine of a pair of doubles, each within 4u; NaN beyond what can be reduced.
+/// exp([k]θ) and how far it is from that at most: 64u with sine and cosine within 4u; any rotation for angles beyond what can be reduced.
 ///
 /// Angles of more than half a turn are reduced by whole turns in pairs of doubles, so that |r| ≤ 4 and what is left
 /// out is below 2⁻⁷⁰; then sin(r + e) = sin r + e cos r, |e| ≤ 2⁻⁵¹.
-fn sin_cos_of(angle: DoubleDouble) -> (f64, f64) {
+fn spin_about(axis: DVec3, angle: DoubleDouble) -> (DMat3, f64) {
     /// 2π to 2⁻¹⁰⁵.
     const TURN: DoubleDouble = DoubleDouble { hi: core::f64::consts::TAU, lo: 2.449_293_598_294_706_4e-16 };
     if angle.hi.is_nan() || angle.hi.abs() > LARGEST_ANGLE {
-        return (f64::NAN, f64::NAN);
+        return (DMat3::IDENTITY, f64::INFINITY);
     }
     let turns = if angle.hi.abs() > 4.0 { (angle.hi / TURN.hi).round() } else { 0.0 };
     let r = if turns == 0.0 { angle } else { angle - TURN * turns };
     let (sin, cos) = sin_cos(r.hi);
-    (sin + r.lo * cos, cos - r.lo * sin)
+    let spin = Spin { omega: axis, speed: 1.0, axis };
+    (spin.rotation_of(sin + r.lo * cos, cos - r.lo * sin), 64.0 * UNIT)
 }

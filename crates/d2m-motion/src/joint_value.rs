@@ -294,8 +294,8 @@ impl JointValue {
     fn over_piece(&self, piece: usize, lo: f64, hi: f64) -> ValueOverTime {
         let coefficients = &self.coefficients[self.starts[piece]..self.starts[piece + 1]];
         let origin = if self.times.is_empty() { 0.0 } else { self.times[piece] };
-        // No span at all: not a number, of which nothing is known.
-        let middle = Interval::try_new(lo, hi).map_or(f64::NAN, Interval::mid);
+        // No span at all, of which nothing is known.
+        let Ok(middle) = Interval::try_new(lo, hi).map(Interval::mid) else { return ValueOverTime::ANY };
         let (s, lost) = two_sum(middle, -origin);
         // The middle relative to the piece's start is off by what the difference lost.
         let half = if lo < hi { (hi - middle).max(middle - lo) * (1.0 + 2.0 * f64::EPSILON) } else { 0.0 };
@@ -330,11 +330,7 @@ impl JointValue {
             let center = b.scaled(factor);
             let radius = up(error * factor + beyond(derivative, r));
             let known = center.hi.is_finite() && center.lo.is_finite() && radius < f64::INFINITY;
-            if known {
-                Enclosed { center, radius }
-            } else {
-                Enclosed { center: DoubleDouble::ZERO, radius: f64::INFINITY }
-            }
+            if known { Enclosed { center, radius } } else { Enclosed::ANY }
         };
         let value = part(0, 1.0);
         let middle_radius = up(term(0).1 + beyond(0, lost.abs())).min(value.radius);
@@ -343,6 +339,14 @@ impl JointValue {
 }
 
 impl ValueOverTime {
+    /// Nothing is known.
+    const ANY: Self = Self {
+        value: Enclosed::ANY,
+        middle_radius: f64::INFINITY,
+        rate: Enclosed::ANY,
+        second: Enclosed::ANY,
+    };
+
     pub(crate) fn rate_magnitude(&self) -> f64 {
         self.rate.magnitude()
     }

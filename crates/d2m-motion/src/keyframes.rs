@@ -1,5 +1,6 @@
 //! Poses at times, joined by motions of constant twist.
 use crate::error::{fault, require_finite};
+use crate::rotation::rotation_vector;
 use crate::sequence::Sequence;
 use crate::{
     CertifiedState, ConstantTwist, IntervalPose, IntervalTwist, Kinematics, MotionError, Pose, RigidMotion,
@@ -333,23 +334,12 @@ fn is_half_turn(start: &Pose, end: &Pose) -> bool {
 
 fn join_linear(start: Pose, end: Pose, t0: f64, t1: f64) -> Result<ConstantTwist, MotionError> {
     let span = t1 - t0;
-    let place = |w: DVec3| {
-        let arrival = end.rotation.normalize() * (start.at - end.at) + end.translation;
-        ConstantTwist::try_new(start.translation, start.rotation, (arrival - start.translation) / span, w)?
-            .try_with_at(start.at)?
-            .try_with_reference_time(t0)
-    };
-    // The turn comes from the screw of the pure rotations, so there is one formula for it.
-    let turning = |pose: Pose| Pose { translation: DVec3::ZERO, at: DVec3::ZERO, ..pose };
-    if let Ok(screw) = ScrewMotion::try_from_poses(turning(start), turning(end), t0, t1) {
-        return place(screw.as_constant_twist().angular_velocity());
-    }
-    // Below 1e-12 rad the vector part is half the turn to full precision.
-    let mut turn = end.rotation.normalize() * start.rotation.normalize().conjugate();
-    if turn.w < 0.0 {
-        turn = -turn;
-    }
-    place(DVec3::new(turn.x, turn.y, turn.z) * (2.0 / span))
+    let arrival = end.rotation.normalize() * (start.at - end.at) + end.translation;
+    let turn = end.rotation.normalize() * start.rotation.normalize().conjugate();
+    let [v, w] = [arrival - start.translation, rotation_vector(turn)].map(|way| way / span);
+    ConstantTwist::try_new(start.translation, start.rotation, v, w)?
+        .try_with_at(start.at)?
+        .try_with_reference_time(t0)
 }
 
 /// The screw between two poses; `None` where the line is closer to it than its rounding.

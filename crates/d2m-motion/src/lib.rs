@@ -32,7 +32,7 @@
 //! the middle of a state, and [`TwistPiece`] says where a motion is a constant twist for a while.
 //! [`FittedTwists`] are constant twists near two motions ([`MovingBall`]s) for a while, by a [`FittedClock`].
 //! [`CoveredMotion`] holds a motion to the times that it covers. [`length`] and [`direction`] are those of a vector in any unit, [`angle`] that of a
-//! point about an axis.
+//! point about an axis, [`rotation_vector`] the turn of a quaternion.
 //!
 //! ## Errors
 //! [`MotionError`]: a description that was refused. [`OutsideDomain`]: times that a motion does not cover.
@@ -111,6 +111,7 @@ pub use length::{direction, length};
 pub use pose::{IntervalPose, Pose};
 pub use retimed::Retimed;
 pub use rigid_motion::{Composition, RigidMotion, TwistPiece};
+pub use rotation::rotation_vector;
 pub use screw::ScrewMotion;
 pub use span_motion::SpanMotion;
 pub use spline::{Spline, SplineDegree};

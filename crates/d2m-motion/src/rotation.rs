@@ -2,6 +2,7 @@
 use crate::double_double_trig::sin_cos_double;
 use crate::sin_cos::{LARGEST_ANGLE, sin_cos};
 use core::ops::Mul;
+use d2m_interval::Interval;
 use d2m_lanes::{DoubleDouble, power_of_two_below};
 use glam::{DMat3, DQuat, DVec3};
 
@@ -25,6 +26,27 @@ pub(crate) fn quat_of(omega: DVec3, s: f64) -> DQuat {
     let (sin, cos) = sin_cos(half);
     let axis = scaled * (sin / speed);
     DQuat::from_xyzw(axis.x, axis.y, axis.z, cos)
+}
+
+/// Axis times angle in [0, π] of the rotation by a unit quaternion, to rounding; the same bits on every platform.
+///
+/// ```
+/// use d2m_motion::{Pose, rotation_vector};
+/// use glam::DVec3;
+/// let turn = DVec3::new(0.5, -1.0, 2.0);
+/// let pose = Pose::from_rotation_vector(DVec3::ZERO, turn);
+/// assert!((rotation_vector(-pose.rotation) - turn).length() < 1e-15);
+/// ```
+pub fn rotation_vector(q: DQuat) -> DVec3 {
+    let q = if q.w < 0.0 { -q } else { q };
+    let axis = DVec3::new(q.x, q.y, q.z);
+    let sine = axis.length();
+    if sine == 0.0 {
+        return DVec3::ZERO;
+    }
+    // Accurate for small turns, where acos of the scalar part is not.
+    let half = Interval::point(sine).atan2(Interval::point(q.w)).mid();
+    axis * (2.0 * half / sine)
 }
 
 /// An angular velocity with its rounded length and direction.

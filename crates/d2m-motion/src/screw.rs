@@ -1,5 +1,6 @@
 //! Screw motion: a turn about an axis fixed in space plus a slide along it (Mozzi–Chasles).
 use crate::rigid_motion::forward;
+use crate::rotation::rotation_vector;
 use crate::{ConstantTwist, MotionError, Pose, RigidMotion, Twist};
 use glam::DVec3;
 
@@ -93,13 +94,11 @@ impl ScrewMotion {
             return Err(MotionError::Screw { reason: "the turn is too small to have an axis" });
         }
         let axis = imaginary / sine;
-        // Accurate for small turns, where acos of the scalar part is not.
-        let angle = 2.0 * atan2_positive(sine, turn.w);
         let along = axis * axis.dot(displacement);
         let across = displacement - along;
         let arm = 0.5 * (across + axis.cross(across) * (turn.w / sine));
         let at = start.at + q0.conjugate() * arm;
-        let motion = place(at, start.translation + arm, along / span, axis * (angle / span))?;
+        let motion = place(at, start.translation + arm, along / span, rotation_vector(turn) / span)?;
         Ok(Self { motion })
     }
 
@@ -150,19 +149,6 @@ impl Scaled {
         let size = v.abs().max_element();
         (size > 0.0).then(|| Self { vector: v / size, size })
     }
-}
-
-/// atan2(y, x) for y ≥ 0, x ≥ 0, by Newton steps on the project's own sine (no platform function).
-pub(crate) fn atan2_positive(y: f64, x: f64) -> f64 {
-    let mut angle = if y > x { core::f64::consts::FRAC_PI_2 - x / y * 0.8 } else { y / x * 0.8 };
-    for _ in 0..5 {
-        let (sin, cos) = crate::sin_cos::sin_cos(angle);
-        // sin(true − angle) and cos(true − angle) up to the common norm.
-        let (s, c) = (y * cos - x * sin, x * cos + y * sin);
-        let tangent = s / c;
-        angle += tangent - tangent * tangent * tangent / 3.0;
-    }
-    angle
 }
 
 impl RigidMotion for ScrewMotion {

@@ -1,7 +1,7 @@
 //! Smooth motions through poses: cubic and quintic Hermite splines, each span a chain of joints.
 use crate::error::fault;
 use crate::joint_points::{LONGEST, SHORTEST, is_length};
-use crate::screw::atan2_positive;
+use crate::rotation::rotation_vector;
 use crate::sequence::Sequence;
 use crate::{
     CertifiedState, Chain, IntervalPose, IntervalTwist, Joint, JointKind, JointValue, Kinematics,
@@ -9,9 +9,6 @@ use crate::{
 };
 use d2m_interval::Interval;
 use glam::{DQuat, DVec3};
-
-/// Below it the vector part of a unit quaternion is half the rotation vector to the last place: x − sin x < x³/6.
-const SMALL_SINE: f64 = 1e-8;
 
 /// How smooth a [`Spline`] is at its poses.
 ///
@@ -187,14 +184,6 @@ fn check(keyframes: impl Iterator<Item = (f64, Pose)>) -> Result<(), MotionError
         }
         None => Ok(()),
     }
-}
-
-/// The rotation vector of a unit quaternion, of length at most π.
-fn rotation_vector(q: DQuat) -> DVec3 {
-    let q = if q.w < 0.0 { -q } else { q };
-    let imaginary = DVec3::new(q.x, q.y, q.z);
-    let sine = imaginary.length();
-    if sine < SMALL_SINE { imaginary * 2.0 } else { imaginary * (2.0 * atan2_positive(sine, q.w) / sine) }
 }
 
 /// exp of a rotation vector.

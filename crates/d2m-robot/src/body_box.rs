@@ -1,13 +1,12 @@
 //! A box about a body, oriented as the body is long and wide.
 
+use d2m_mesh::PrincipalAxes;
 use d2m_motion::CertifiedState;
 use glam::{DMat3, DVec3};
 
 /// More than the roundings of a point's coordinates along an axis add up to, in parts of what is added: three products, two
 /// sums, the rotation and translation of the point before (as many again), each half a unit in the last place.
 const ROUNDINGS: f64 = 32.0 * f64::EPSILON;
-/// Sweeps of Jacobi's method: three are enough for a matrix of three rows; what is left makes no box wrong, only larger.
-const SWEEPS: usize = 6;
 
 /// Every point of a body is center + Σ xᵢ·axisᵢ with |xᵢ| ≤ halfᵢ, up to `blur`, in the frame of what carries it.
 #[derive(Debug, Clone, Copy)]
@@ -59,7 +58,7 @@ impl BodyBox {
     }
 }
 
-/// The axes along which the points are spread most and least, at right angles: those of their covariance, by Jacobi's method.
+/// The axes along which the points are spread most and least, at right angles: those of their covariance.
 fn principal_axes(points: &[DVec3]) -> DMat3 {
     let count = points.len().max(1) as f64;
     let mean = points.iter().copied().sum::<DVec3>() / count;
@@ -71,24 +70,7 @@ fn principal_axes(points: &[DVec3]) -> DMat3 {
             spread += DMat3::from_cols(off * off.x, off * off.y, off * off.z);
         }
     }
-    let mut axes = DMat3::IDENTITY;
-    for _ in 0..SWEEPS {
-        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-            let (aii, ajj, aij) = (spread.col(i)[i], spread.col(j)[j], spread.col(j)[i]);
-            if aij == 0.0 {
-                continue;
-            }
-            let ratio = (ajj - aii) / (2.0 * aij);
-            let tangent = ratio.signum() / (ratio.abs() + (ratio * ratio + 1.0).sqrt());
-            let cos = 1.0 / (tangent * tangent + 1.0).sqrt();
-            let sin = tangent * cos;
-            let mut turn = DMat3::IDENTITY;
-            (turn.col_mut(i)[i], turn.col_mut(j)[j]) = (cos, cos);
-            (turn.col_mut(j)[i], turn.col_mut(i)[j]) = (sin, -sin);
-            spread = turn.transpose() * spread * turn;
-            axes *= turn;
-        }
-    }
+    let axes = PrincipalAxes::of(spread).axes;
     if axes.is_finite() { axes } else { DMat3::IDENTITY }
 }
 

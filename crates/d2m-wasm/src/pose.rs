@@ -2,8 +2,7 @@
 
 use d2m::bvh::{MeshTree, Window};
 use d2m::motion::{AnyMotion, ConstantTwist, CoveredMotion, Pose};
-use d2m_io::{check_keyframes, parse_json};
-use glam::DVec3;
+use d2m_io::{check_keyframes, parse_json, pose_at_rest};
 
 /// Reads JSON in the forms of the formats, or `x=…;q=…;v=…;w=…` as the command takes it. `place` stands in messages.
 fn read(place: &str, text: &str) -> Result<AnyMotion, String> {
@@ -31,14 +30,5 @@ pub(crate) fn read_motion(
 
 /// The pose of a body at rest: x, q and at.
 pub(crate) fn read_pose(place: &str, text: &str) -> Result<Pose, String> {
-    let AnyMotion::ConstantTwist(motion) = read(place, text)? else {
-        return Err(format!("{place}: a pose has x, q and at, and no course over time"));
-    };
-    for (key, velocity) in [("v", motion.linear_velocity()), ("w", motion.angular_velocity())] {
-        if velocity != DVec3::ZERO {
-            let value = velocity.to_array();
-            return Err(format!("{place}: {key} is {value:?}: a pose has x, q and at, but no velocity"));
-        }
-    }
-    Ok(Pose { rotation: motion.orientation(), translation: motion.position(), at: motion.at() })
+    pose_at_rest(&read(place, text)?).map_err(|error| format!("{place}: {error}"))
 }

@@ -39,9 +39,6 @@ const LEAST_TOLERANCE_ERRORS: f64 = 2.0;
 const SLACK: f64 = 1.0 / 64.0;
 /// Most rotation, both bodies together, inside one sub-window: frames hold for 0.35 radians.
 pub(crate) const WINDOW_ANGLE: f64 = 0.3;
-/// Most radians between a reference time and the window: poses are proven for less than 2⁵⁰, and a window of
-/// [`WINDOW_ANGLE`] is then long against the resolution of offsets.
-const MOST_ANGLE: f64 = 1_099_511_627_776.0; // 2⁴⁰
 /// A spin below this (radians in a unit of time) loses part of its speed to underflow if it acts for long: it is refused
 /// unless the angle is below all roundings.
 const LEAST_SPIN: f64 = power_of_two(-900);
@@ -183,7 +180,7 @@ impl<'a> MovingScene<'a> {
         let end = units.end_up();
         for (body, it) in [&a, &b].into_iter().enumerate() {
             // Also what is not a number is refused.
-            let bounded = it.motion.angle(end) < MOST_ANGLE && it.motion.terms() < f64::INFINITY;
+            let bounded = it.motion.angle(end) < QueryError::MOST_ANGLE && it.motion.terms() < f64::INFINITY;
             let slow = it.spin() >= LEAST_SPIN || it.motion.angle(end) <= UNSEEN_ANGLE;
             if !(bounded && slow) {
                 return Err(QueryError::BadMotion { body });

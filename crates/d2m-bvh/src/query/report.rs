@@ -86,15 +86,12 @@ impl Task for Report<'_> {
     }
 }
 
-/// What a search leaves at most, in tolerances.
-pub(super) const MOST_LEFT: f64 = 3.3;
-
 /// Where the resolution of time is coarser than the tolerance, more separation is left: then the tolerance is what is left.
 fn cover_what_is_left(contact: &mut Contact, scene: &MovingScene<'_>) {
     let length = scene.units.length();
     let separation = (scene.pair.level - scene.tolerance) * length;
     let left = contact.separation - separation;
-    if left > MOST_LEFT * contact.tolerance {
+    if left > Contact::MOST_LEFT * contact.tolerance {
         // The closest points are on the triangles up to the error.
         contact.tolerance = left + scene.pair.error * length;
         contact.evidence = contact.evidence.max(Evidence::Near);

@@ -1,6 +1,6 @@
 //! Options of the commands for bodies at rest.
 
-use super::{MESH_HELP, SizeArguments, SolidArguments};
+use super::{SizeArguments, SolidArguments, mesh_help};
 use clap::Args;
 
 /// Help after the options of a command that takes poses: what a pose is, and then the text.
@@ -17,9 +17,9 @@ macro_rules! with_pose_help {
 /// Two bodies at rest.
 #[derive(Debug, Args)]
 pub(crate) struct PosedArguments {
-    #[arg(value_name = "A", help = MESH_HELP)]
+    #[arg(value_name = "A", help = mesh_help())]
     pub(crate) a: String,
-    #[arg(value_name = "B", help = MESH_HELP)]
+    #[arg(value_name = "B", help = mesh_help())]
     pub(crate) b: String,
     #[command(flatten)]
     pub(crate) sizes: SizeArguments,

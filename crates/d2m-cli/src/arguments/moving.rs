@@ -1,6 +1,6 @@
 //! Arguments of questions about two moving meshes.
 
-use super::{MESH_HELP, QueryArguments};
+use super::{QueryArguments, mesh_help};
 use crate::failure::Failure;
 use crate::motion::parse_motions;
 use clap::{Args, ValueEnum};
@@ -45,9 +45,9 @@ pub(crate) struct TocArguments {
 /// Two moving meshes, how they are asked about and how the answer is given: what all questions about them share.
 #[derive(Debug, Args)]
 pub(crate) struct PairArguments {
-    #[arg(value_name = "A", help = MESH_HELP)]
+    #[arg(value_name = "A", help = mesh_help())]
     pub(crate) a: String,
-    #[arg(value_name = "B", help = MESH_HELP)]
+    #[arg(value_name = "B", help = mesh_help())]
     pub(crate) b: Option<String>,
     #[command(flatten)]
     pub(crate) motions: MotionArguments,
@@ -153,9 +153,9 @@ Example:
   d2m toc shape:gear shape:torus --motion-a 'x=-3,0,0;v=4,0,0' --json > answer.json
   d2m verify shape:gear shape:torus --motion-a 'x=-3,0,0;v=4,0,0' --answer answer.json")]
 pub(crate) struct VerifyArguments {
-    #[arg(value_name = "A", help = MESH_HELP)]
+    #[arg(value_name = "A", help = mesh_help())]
     pub(crate) a: String,
-    #[arg(value_name = "B", help = MESH_HELP)]
+    #[arg(value_name = "B", help = mesh_help())]
     pub(crate) b: String,
     /// Answer of d2m toc, d2m clearance or d2m spans with --json; - for standard input
     #[arg(long, value_name = "ANSWER.json")]

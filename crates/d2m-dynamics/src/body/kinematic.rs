@@ -2,12 +2,11 @@
 
 use crate::body::description::Kind;
 use crate::body::rigid_body::RigidBody;
-use crate::body::turning::rotation_vector;
 use crate::numbers::LARGEST;
 use crate::{SimulationError, StepError};
 use d2m_contact::Velocity;
 use d2m_interval::{Interval, IntervalVec3};
-use d2m_motion::{CoveredMotion, RigidMotion as _};
+use d2m_motion::{CoveredMotion, RigidMotion as _, rotation_vector};
 use glam::{DQuat, DVec3};
 
 /// How far the twist of a kinematic flight may lead off the motion between its ends, as a part of the gap.

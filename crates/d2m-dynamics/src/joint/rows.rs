@@ -2,12 +2,12 @@
 
 use crate::SimulationError;
 use crate::body::rigid_body::RigidBody;
-use crate::body::turning::rotation_vector;
 use crate::joint::description::{Joint, JointKind, Motor, MotorTarget};
 use crate::numbers::{FINITE, NOT_NEGATIVE, UNUSABLE, is_small};
 use crate::shown::{shown, shown_turn};
 use d2m_contact::{ContactPoint, JointPart, JointRow, Law, Material, tangents};
 use d2m_feature::FeaturePair;
+use d2m_motion::rotation_vector;
 use glam::{BVec3, DQuat, DVec3};
 
 /// The part of a joint's position error that a step corrects.

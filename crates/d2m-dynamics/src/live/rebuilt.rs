@@ -3,12 +3,12 @@
 use crate::SimulationError;
 use crate::body::description::{Body, Kind, Presence};
 use crate::body::rigid_body::{RigidBody, Role, Target, rest};
-use crate::body::turning::rotation_vector;
 use crate::numbers::unusable_of;
 use crate::rest::quiet::Quiet;
 use d2m_bvh::{MeshTree, TriMesh};
 use d2m_contact::Velocity;
 use d2m_mesh::Faces;
+use d2m_motion::rotation_vector;
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 

@@ -2,6 +2,9 @@
 use super::{BoxTree, Hint, bound_separation, cross, separation};
 use crate::trials::Trial;
 
+/// Separation left at `lo`, in tolerances: the documented promise, in a number of the judge's own.
+pub(crate) const MOST_LEFT: f64 = 3.3;
+
 /// What a method says about one trial over [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Claim {
@@ -31,7 +34,7 @@ pub(crate) enum Fault {
     Missed { at: f64 },
     /// The bodies cross at `lo`.
     Penetrates,
-    /// The separation left at `lo` is larger than 3.3 tolerances.
+    /// The separation left at `lo` is larger than [`MOST_LEFT`] tolerances.
     Far { separation: f64 },
     /// Not a time in [0, 1], or reversed.
     Nonsense,
@@ -183,7 +186,7 @@ impl Judge<'_> {
                     return Err(Fault::Penetrates);
                 }
                 // At the start of the window a body may be inside the other, however far its surface is.
-                if exact && lo > 0.0 && left > 3.3 * tolerance {
+                if exact && lo > 0.0 && left > MOST_LEFT * tolerance {
                     return Err(Fault::Far { separation: left });
                 }
                 Ok(left)

@@ -5,7 +5,7 @@ mod placement;
 mod separation;
 mod triangle;
 
-pub(crate) use answer::{Claim, Judge, advance};
+pub(crate) use answer::{Claim, Judge, MOST_LEFT, advance};
 pub(crate) use placement::{Placement, place};
 pub(crate) use separation::{BoxTree, Hint, bound_separation, cross, separation};
 pub(crate) use triangle::distance;

@@ -36,9 +36,6 @@ pub fn query_fault(error: &QueryError, motions: [&dyn RigidMotion; 2], window: W
     }
 }
 
-/// Turns that queries refuse, 2⁴⁰ radians.
-const MOST_TURN: f64 = 1_099_511_627_776.0;
-
 /// Why a query cannot bound the rounding of a motion: of a constant twist as far as its numbers say it.
 fn reason(motion: &dyn RigidMotion, window: Window) -> String {
     let Some(twist) = motion.constant_twist() else {
@@ -52,7 +49,7 @@ fn reason(motion: &dyn RigidMotion, window: Window) -> String {
     let [way, turn] = [twist.linear_velocity(), twist.angular_velocity()].map(over_window);
     let (way, turn_text) = (short_number(way), short_number(turn));
     let far = "doubles cannot place it so far away, beside bodies of these sizes";
-    if turn >= MOST_TURN {
+    if turn >= QueryError::MOST_ANGLE {
         format!("over the window it turns by {turn_text} radians: 2^40 and more are refused")
     } else if turn == 0.0 {
         format!("over the window it goes {way}: {far}")

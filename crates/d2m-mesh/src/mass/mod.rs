@@ -2,12 +2,14 @@
 
 mod compensated;
 mod error;
+mod principal_axes;
 
 use crate::mesh::Closedness;
 use crate::{MeshPart, MeshParts, Topology, TriMesh};
 use compensated::Sum;
 pub use error::MassError;
 use glam::{DMat3, DVec3};
+pub use principal_axes::PrincipalAxes;
 
 /// Mass, center of mass and inertia of a body, in the axes of its mesh.
 ///
@@ -151,33 +153,13 @@ impl MassProperties {
     }
 }
 
-/// Rotations of Jacobi's method: each round of three takes the square of what is off the diagonal, so few are enough for doubles.
-const ROUNDS: u32 = 16;
-
-/// Eigenvalues of a symmetric matrix, ascending, to rounding, by Jacobi's rotations.
+/// Eigenvalues of a symmetric matrix, ascending, to rounding.
 fn principal_moments(symmetric: &DMat3) -> DVec3 {
     // Relative to the largest entry: no product overflows.
     let size = largest(symmetric);
-    let mut m = (*symmetric * (1.0 / size)).to_cols_array_2d();
-    for (p, q) in [(0, 1), (0, 2), (1, 2)].into_iter().cycle().take(3 * ROUNDS as usize) {
-        if m[p][q] == 0.0 {
-            continue;
-        }
-        let half = 0.5 * (m[q][q] - m[p][p]) / m[p][q];
-        let tangent = 1.0_f64.copysign(half) / (half.abs() + (1.0 + half * half).sqrt());
-        let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
-        let sine = tangent * cosine;
-        for column in &mut m {
-            let (a, b) = (column[p], column[q]);
-            (column[p], column[q]) = (cosine * a - sine * b, sine * a + cosine * b);
-        }
-        let (a, b) = (m[p], m[q]);
-        m[p] = core::array::from_fn(|k| cosine * a[k] - sine * b[k]);
-        m[q] = core::array::from_fn(|k| sine * a[k] + cosine * b[k]);
-    }
-    let mut moments = [m[0][0], m[1][1], m[2][2]].map(|moment| moment * size);
+    let mut moments = PrincipalAxes::of(*symmetric * (1.0 / size)).moments.to_array();
     moments.sort_by(f64::total_cmp);
-    DVec3::from_array(moments)
+    DVec3::from_array(moments) * size
 }
 
 fn largest(m: &DMat3) -> f64 {

@@ -39,7 +39,7 @@ impl Edge {
     }
 
     /// The second triangle at this edge, in number order; none on a boundary.
-    pub fn second_triangle(&self) -> Option<u32> {
+    pub(crate) fn second_triangle(&self) -> Option<u32> {
         (self.triangles[1] != NONE).then_some(self.triangles[1])
     }
 
@@ -211,11 +211,6 @@ impl Topology {
     /// Different positions that are used by triangles.
     pub fn position_count(&self) -> usize {
         self.position_count
-    }
-
-    /// Triangles that repeat an earlier one with the same orientation.
-    pub fn duplicate_count(&self) -> usize {
-        self.repeated.len()
     }
 
     /// The triangles that repeat an earlier one with the same orientation, ascending.

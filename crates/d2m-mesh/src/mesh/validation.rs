@@ -94,7 +94,7 @@ impl Validation {
         let duplicates = |vertex: &u32| topology.representative(*vertex) != *vertex;
         Self {
             degenerate_triangles,
-            duplicate_triangles: topology.duplicate_count(),
+            duplicate_triangles: topology.repeated().len(),
             duplicate_vertices: (0..mesh.vertex_count() as u32).filter(duplicates).count(),
             unused_vertices: used.iter().filter(|&&is_used| !is_used).count(),
             boundary_edges: count(&|incidence| incidence == 1),

@@ -82,7 +82,7 @@ impl<'a> EdgePair<'a> {
     }
 
     /// Replaces the most pieces of time that the search may evaluate.
-    pub const fn set_max_evaluations(&mut self, evaluations: u32) {
+    pub(crate) const fn set_max_evaluations(&mut self, evaluations: u32) {
         self.options.evaluations = evaluations;
     }
 

@@ -67,7 +67,7 @@ impl PointJet {
     }
 
     /// Encloses q′ over the offsets `x`.
-    pub fn enclose_velocity(&self, x: Interval) -> IntervalVec3 {
+    pub(crate) fn enclose_velocity(&self, x: Interval) -> IntervalVec3 {
         self.q[1] + self.q[2] * x
     }
 

@@ -27,9 +27,6 @@ use d2m_bvh::{
 use d2m_interval::Interval;
 use traverse::Search;
 
-/// δ where the options give none, in units of the larger radius: the documented default.
-const DEFAULT_TOLERANCE: f64 = 1e-10;
-
 /// A body with its sphere tree, and how it moves.
 ///
 /// ```
@@ -148,7 +145,7 @@ fn validate(bodies: &[Moving<'_>; 2], window: Window, options: &QueryOptions) ->
         return Err(QueryError::BadMinSeparation { value: options.min_separation });
     }
     let radius = bodies.iter().map(|m| m.body.bounding_sphere().radius).fold(0.0, f64::max);
-    let tolerance = options.tolerance.unwrap_or(DEFAULT_TOLERANCE * radius.max(f64::MIN_POSITIVE));
+    let tolerance = options.tolerance_of(radius.max(f64::MIN_POSITIVE));
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(QueryError::BadTolerance { value: tolerance });
     }

@@ -5,6 +5,9 @@ use d2m_bvh::{EnclosingSphere, MeshTree, Topology, TriMesh};
 use glam::DVec3;
 use std::collections::HashSet;
 
+/// ε of the paper, as a part of the body's radius.
+const RIB: f64 = 1.0 / 32.0;
+
 /// A node: the smallest sphere around its raw geometry, and two children or the content of a leaf.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
@@ -83,19 +86,11 @@ pub struct SphereTree {
 }
 
 impl SphereTree {
-    /// ε of the paper, as a part of the body's radius.
-    pub const RIB: f64 = 1.0 / 32.0;
-
-    /// The tree with ribs of [`Self::RIB`].
-    pub fn new(mesh: TriMesh) -> Self {
-        Self::with_rib(mesh, Self::RIB)
-    }
-
-    /// The tree with beams subdivided until their longest rib is at most `rib` times the body's radius.
+    /// The tree with beams subdivided until their longest rib is at most 1/32 of the body's radius.
     ///
     /// # Panics
     /// If `mesh` has no triangle.
-    pub fn with_rib(mesh: TriMesh, rib: f64) -> Self {
+    pub fn new(mesh: TriMesh) -> Self {
         let topology = Topology::new(&mesh);
         let count = mesh.triangle_count();
         assert!(count > 0, "a body needs a triangle");
@@ -107,7 +102,7 @@ impl SphereTree {
             .collect();
         let mut triangles: Vec<u32> = (0..count as u32).collect();
         let mut build = Build { mesh: &mesh, centroids: &centroids, rib: 0.0, nodes: vec![], leaves: vec![] };
-        build.rib = rib * build.sphere(&triangles).radius;
+        build.rib = RIB * build.sphere(&triangles).radius;
         build.node(&mut triangles);
         let (nodes, mut leaves) = (build.nodes, build.leaves);
         assign_features(&mesh, &topology, &mut leaves);
@@ -130,7 +125,7 @@ impl SphereTree {
     }
 
     /// The number of nodes, leaves included.
-    pub fn node_count(&self) -> usize {
+    pub(crate) fn node_count(&self) -> usize {
         self.nodes.len()
     }
 

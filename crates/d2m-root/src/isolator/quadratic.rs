@@ -339,7 +339,7 @@ impl Quadratic {
     #[cold]
     #[inline(never)]
     fn bound_below_far(&self, part: Piece) -> f64 {
-        let Some(unit) = TimeUnit::of(part) else { return f64::NAN };
+        let Some(unit) = TimeUnit::of(part) else { return f64::NEG_INFINITY };
         self.in_unit(unit).bound_below(unit.piece(part))
     }
 

@@ -54,7 +54,7 @@ impl Parabola {
     }
 
     /// Enclosure of p′ over the offsets `x`.
-    pub fn enclose_slope(self, x: Interval) -> Interval {
+    pub(crate) fn enclose_slope(self, x: Interval) -> Interval {
         Interval::point(self.slope) + x * self.curvature
     }
 
@@ -98,7 +98,7 @@ impl Parabola {
     /// An upper bound of the largest x ≥ 0 with p(x) ≤ 0, `∞` where p stays nonpositive or rounding leaves that open.
     ///
     /// Meaningful only if such an x exists; otherwise any value may come back.
-    pub fn bound_last_nonpositive(self) -> f64 {
+    pub(crate) fn bound_last_nonpositive(self) -> f64 {
         if self.curvature.is_nan() || self.curvature <= 0.0 {
             return f64::INFINITY;
         }
@@ -114,7 +114,7 @@ impl Parabola {
     }
 
     /// Given p(0) ≤ 0, p″ ≤ 0 and p(w) > 0 for some w: an upper bound of the offset at which p turns positive.
-    pub fn bound_first_rise(self) -> f64 {
+    pub(crate) fn bound_first_rise(self) -> f64 {
         let p = InUnits::of(self);
         let d = nonnegative(p.discriminant());
         p.offset(quotient(nonnegative(-p.value * 2.0), nonnegative(d.sqrt() + p.slope))).hi()

@@ -8,7 +8,7 @@ use crate::{Contact, Mode, Moving, QueryOptions, StartState, TimeOfContact, Wind
 use d2m_bvh::{ClearanceStatus, Evidence, TimeBracket};
 
 /// The separation that may be left above s, in tolerances.
-pub(super) const MOST_LEFT: f64 = 3.3;
+pub(super) const MOST_LEFT: f64 = Contact::MOST_LEFT;
 /// The width of a clearance in tolerances, where that is more than its accuracy.
 const WIDTH: f64 = 4.0;
 

@@ -3,7 +3,6 @@
 use super::Advance;
 use crate::moving::triangles_of;
 use crate::query::at_start::of_pair;
-use crate::query::report::MOST_LEFT;
 use crate::{Contact, Evidence, Mode, StartState};
 use d2m_feature::TrianglesAt;
 use d2m_mesh::margin::direction;
@@ -86,7 +85,7 @@ impl Advance<'_> {
             return contact;
         }
         let left = separation - self.options.min_separation;
-        let covered = left <= MOST_LEFT * contact.tolerance;
+        let covered = left <= Contact::MOST_LEFT * contact.tolerance;
         let keeps = covered || contact.start != StartState::Apart || self.options.mode == Mode::Capoeira;
         Contact { separation, tolerance: if keeps { contact.tolerance } else { left }, ..contact }
     }

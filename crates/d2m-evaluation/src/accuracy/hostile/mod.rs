@@ -13,6 +13,7 @@ mod twins;
 
 use super::{Outcome, Task};
 use crate::bench::Sabotage;
+use crate::judge::MOST_LEFT;
 use crate::memory;
 use d2m::bvh::Evidence;
 use d2m_testing::Xoshiro256 as Random;
@@ -23,8 +24,6 @@ use std::path::Path;
 
 /// Twins of each scene.
 const TWINS: usize = 3;
-/// Separation left at `lo`, in tolerances: the documented promise.
-const LEFT: f64 = 3.3;
 /// Distances err by this part of the scene's size: doubles, and some operations on them.
 const DISTANCE_ERROR: f64 = 1e-14;
 
@@ -261,7 +260,7 @@ fn judge(scene: &HostileScene, answer: &Answer, more: &[f64]) -> Option<Fault> {
         if at_lo.meet() {
             return Some(Fault::Negative(format!("{answer:?}, and the bodies share points at lo")));
         }
-        let most = scene.min_separation + LEFT * tolerance + room;
+        let most = scene.min_separation + MOST_LEFT * tolerance + room;
         if evidence != Evidence::Early {
             let left = at_lo.distance(2.0 * most);
             if left > most {

@@ -5,8 +5,8 @@ use crate::{Posed, QueryError};
 use d2m_interval::{IntervalMat3, IntervalVec3};
 use glam::{DQuat, DVec3};
 
-/// Lengths beyond this are refused: squares and cubes of them could overflow.
-const LARGEST: f64 = 1e100;
+/// See there.
+const LONGEST: f64 = QueryError::LONGEST_AT_REST;
 
 /// Body A in the frame of B's tree: a point p of A (from the center of A's tree, body axes) is at R·p + T from the
 /// center of B's tree, in B's axes.
@@ -45,7 +45,7 @@ impl RelativePose {
     /// From the poses in the world.
     ///
     /// # Errors
-    /// [`QueryError::BadPose`] for a pose that is not finite, a zero quaternion, or lengths beyond 1e100.
+    /// [`QueryError::BadPose`] for a pose that is not finite, a zero quaternion, or lengths beyond [`QueryError::LONGEST_AT_REST`].
     pub(crate) fn try_new(a: Posed<'_>, b: Posed<'_>) -> Result<Self, QueryError> {
         for (body, posed) in [a, b].into_iter().enumerate() {
             let pose = posed.pose;
@@ -53,8 +53,8 @@ impl RelativePose {
             let lengths = pose.translation.abs().max_element().max(pose.at.abs().max_element());
             let good = pose.translation.is_finite()
                 && pose.at.is_finite()
-                && lengths <= LARGEST
-                && posed.body.radius() <= LARGEST
+                && lengths <= LONGEST
+                && posed.body.radius() <= LONGEST
                 && quaternion.iter().all(|c| c.is_finite())
                 && quaternion.iter().any(|&c| c != 0.0);
             if !good {
@@ -78,7 +78,7 @@ impl RelativePose {
         let middle = offset.mid();
         let size = (a.body.radius() + b.body.radius() + middle.length()) * (1.0 + 16.0 * UNIT_F64);
         let error = (turn * size + spread(offset)) * (1.0 + 32.0 * UNIT_F64);
-        if !(size <= 10.0 * LARGEST && error.is_finite()) {
+        if !(size <= 10.0 * LONGEST && error.is_finite()) {
             return Err(QueryError::BadPose { body: 0 });
         }
         Ok(Self { rotation: columns.map(IntervalVec3::mid), offset: middle, error, size })
