@@ -52,10 +52,17 @@ pub enum JointPart {
         /// The number of the equation among those of the joint.
         number: usize,
     },
-    /// The value of a joint, an angle or a length, which limits, motors, springs and friction are about.
+    /// The value of a joint, an angle or a length, which limits and motors are about.
     Value {
         /// The joint's number.
         joint: usize,
+    },
+    /// A force along that value, as of a spring, whose impulse depends on how long the flight is.
+    Force {
+        /// The joint's number.
+        joint: usize,
+        /// The number of the force among those of the joint.
+        number: usize,
     },
 }
 

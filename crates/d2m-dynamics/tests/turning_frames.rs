@@ -2,7 +2,9 @@
 
 mod ground;
 
-use d2m_dynamics::{Body, BodyId, Joint, JointKind, Kind, Motor, MotorTarget, Simulation, SimulationOptions};
+use d2m_dynamics::{
+    Body, BodyId, Joint, JointKind, Kind, Motor, MotorTarget, Simulation, SimulationOptions, Spring,
+};
 use d2m_motion::ConstantTwist;
 use glam::DVec3;
 use ground::{run, tree};
@@ -73,4 +75,56 @@ fn slides_that_turn_keep_to_limits_and_motors() {
         let driven = slide(&|joint| joint.with_motor(motor));
         assert!((limited - 0.2).abs() < 1e-4 && (driven - 0.1).abs() < 1e-4, "{rate}: {limited} {driven}");
     }
+}
+
+/// A body that turns about a point far from its center follows its motion by many flights a step: what it carries flies as
+/// long as these, and not on along the last one.
+#[test]
+fn bodies_on_circles_carry_what_is_joined_to_them() {
+    let mut simulation = weightless();
+    let circle = ConstantTwist::REST.with_at(DVec3::X * 2.0).with_angular_velocity(DVec3::Y * 10.0);
+    let hub = Body::new("hub", tree("box?x=0.05&y=0.05&z=0.05"));
+    let hub = simulation.add(&hub.with_kind(Kind::Kinematic(Arc::new(circle)))).unwrap();
+    let start = simulation.position(hub) + DVec3::X * 0.5;
+    let carried = Body::new("carried", tree("box?x=0.1&y=0.1&z=0.1")).with_position(start);
+    let velocity = (DVec3::Y * 10.0).cross(start - simulation.position(hub) - DVec3::X * 2.0);
+    let carried = carried.with_linear_velocity(velocity).with_angular_velocity(DVec3::Y * 10.0);
+    let carried = simulation.add(&carried).unwrap();
+    simulation.add_joint(&Joint::new(JointKind::Fixed, hub, Some(carried), start)).unwrap();
+    while simulation.time() < 0.2 {
+        simulation.step().unwrap();
+        let off = off(&simulation, hub, carried, DVec3::X * 0.5);
+        assert!(off < 1e-6, "{off}");
+    }
+}
+
+/// In a step that is flown in parts springs pull and friction holds in each of them: of a slide at half a radian a step.
+#[test]
+fn forces_of_joints_act_in_every_flight_of_a_step() {
+    let (rate, mass) = (50.0_f64, 8.0);
+    let slide = |joint: &dyn Fn(Joint) -> Joint| {
+        let mut simulation = weightless();
+        let hub = turning(&mut simulation, rate);
+        let cube = carried(&mut simulation, "box?x=0.1&y=0.1&z=0.1", rate);
+        assert!((simulation.mass_properties(cube).unwrap().mass - mass).abs() < 1e-9);
+        let free = Joint::new(JointKind::Prismatic, hub, Some(cube), DVec3::X * 0.5).with_axis(DVec3::X);
+        let held = simulation.add_joint(&joint(free)).unwrap();
+        let mut flights = 0;
+        while simulation.time() < 1.0 {
+            flights += simulation.step().unwrap().segments.len();
+        }
+        assert!(flights > 150, "{flights}");
+        simulation.joint_value(held)
+    };
+    // k x = m ω² (0.5 + x) at x = 1/4, damped critically.
+    let stiffness = 3.0 * mass * rate * rate;
+    let spring = Spring::new(stiffness, 2.0 * (mass * stiffness).sqrt(), 0.0);
+    let stretched = slide(&|joint| joint.with_spring(spring));
+    assert!((stretched - 0.25).abs() < 0.01, "{stretched}");
+    // Friction of three times the force that draws it outward.
+    let held = slide(&|joint| joint.with_friction(1.5 * mass * rate * rate));
+    assert!(held.abs() < 1e-4, "{held}");
+    // And of half of it.
+    let slides = slide(&|joint| joint.with_friction(0.25 * mass * rate * rate).with_limits([-1.0, 1.0]));
+    assert!((slides - 1.0).abs() < 1e-3, "{slides}");
 }

@@ -176,8 +176,13 @@ impl Problem<'_> {
             if moves(s) { prepare(s, s.flight_velocity(span.remaining, options.gravity)) } else { still(s) }
         };
         let free: Vec<SolverBody> = states.iter().map(start).collect();
-        let rows = select(self.contacts, span, |body| &free[place(body)]);
-        let contacts: Vec<ContactPoint> = rows.iter().map(|row| *self.contacts[row.contact]).collect();
+        let acting = self.with_forces(end);
+        let all: Cow<'_, [&ContactPoint]> = match &acting {
+            Some(acting) => acting.iter().collect(),
+            None => Cow::Borrowed(self.contacts),
+        };
+        let rows = select(&all, span, |body| &free[place(body)]);
+        let contacts: Vec<ContactPoint> = rows.iter().map(|row| *all[row.contact]).collect();
         let targets: Vec<f64> = rows.iter().map(|row| row.target).collect();
         let precision = PRECISION * options.gap / options.step;
         let slow = span.resting_speed.max(options.gap / options.step);

@@ -102,6 +102,11 @@ impl Problem<'_> {
         let splits = if self.has_like_joints() { Splits::Jointed } else { Splits::Own };
         let horizon = |s: &Cow<'_, RigidBody>| s.horizon_within(end, self.options.step, splits);
         let mut end = if is_whole { end } else { moved().map(horizon).fold(end, f64::min) };
+        if self.has_rows() {
+            // Joints are met where a kinematic body ends its flight, not where that would lead on.
+            let driven = self.states.iter().filter(|s| s.is_kinematic() && s.horizon > now);
+            end = driven.map(|s| s.horizon).fold(end, f64::min);
+        }
         let mut tried = self.attempt(now, end, Room::Kept);
         while !self.keeps_energy_of_turning(&tried) {
             let half = now + 0.5 * (end - now);
@@ -208,8 +213,7 @@ impl Problem<'_> {
 
     /// The bodies of these joints as one rigid body; motors do nothing then.
     fn with_rigid(&self, numbers: &[usize], [now, end]: [f64; 2]) -> Option<Attempt> {
-        let ahead =
-            Ahead { length: end - now, step: self.options.step, forces: false, passed: 0.0, spent: 0.0 };
+        let ahead = Ahead { length: end - now, step: self.options.step, passed: 0.0, spent: 0.0 };
         let (contacts, joints) = self.locked(numbers, ahead);
         let contacts: Vec<&ContactPoint> = contacts.iter().collect();
         let rigid = Problem { contacts: &contacts, joints: &joints, ..*self };

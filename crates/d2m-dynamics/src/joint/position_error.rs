@@ -47,14 +47,19 @@ impl Ends<'_> {
         let mut known: Option<Flown<'_>> = None;
         for (row, contact) in contacts.iter().enumerate() {
             let Some(of) = contact.row else { continue };
-            let (JointPart::Equation { joint, .. } | JointPart::Value { joint }) = of.part else { continue };
+            let (JointPart::Equation { joint, .. }
+            | JointPart::Value { joint }
+            | JointPart::Force { joint, .. }) = of.part
+            else {
+                continue;
+            };
             let flown = match known.take().filter(|known| known.number == joint) {
                 Some(flown) => flown,
                 None => self.fly(joint, [contact.a, contact.b].map(&place), system),
             };
             missed.push(match of.part {
                 JointPart::Equation { number, .. } => Missed { row, rate: flown.rates[number], counts: true },
-                JointPart::Rate | JointPart::Value { .. } => {
+                JointPart::Rate | JointPart::Value { .. } | JointPart::Force { .. } => {
                     let rate = system.rate(row);
                     let lag = flown.mean_rate(contact.normal, rate, self.span.remaining) - rate;
                     let wanted = of.pushing - lag;

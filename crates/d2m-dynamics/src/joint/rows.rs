@@ -3,6 +3,7 @@
 use crate::SimulationError;
 use crate::body::rigid_body::RigidBody;
 use crate::joint::description::{Joint, JointKind, Motor, MotorTarget};
+use crate::joint::force::Acted;
 use crate::numbers::{FINITE, NOT_NEGATIVE, UNUSABLE, is_small};
 use crate::shown::{shown, shown_turn};
 use d2m_contact::{ContactPoint, JointPart, JointRow, Law, Material, tangents};
@@ -27,6 +28,8 @@ pub(crate) struct Joined {
     /// The last value, and when that was computed: angles go on beyond half a turn.
     value: f64,
     looked: f64,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) acted: Acted,
     /// Was the joint removed, or one of its bodies?
     is_gone: bool,
 }
@@ -36,8 +39,6 @@ pub(crate) struct Joined {
 pub(crate) struct Ahead {
     pub(crate) length: f64,
     pub(crate) step: f64,
-    /// Do springs, soft motors and friction act? Not at an event: they have acted for the whole step.
-    pub(crate) forces: bool,
     /// How much of the step has passed, and the impulse of the joint's motor in it.
     pub(crate) passed: f64,
     pub(crate) spent: f64,
@@ -76,6 +77,7 @@ impl Joined {
             turn: a.orientation.conjugate() * b.orientation,
             value: 0.0,
             looked: a.time.max(b.time),
+            acted: Acted::default(),
             is_gone: false,
         })
     }
@@ -364,28 +366,9 @@ impl Joined {
             let rate = rate.min(fastest).max(slowest);
             made.add(axis, JointRow { is_motor: true, ..row(law, rate, rate) });
         }
-        if !ahead.forces {
-            return;
-        }
-        let soft = |stiffness: f64, damping: f64, off: f64, most: f64| {
-            let softness = 1.0 / (h * (h * stiffness + damping));
-            let law = Law::Range { lo: -most * h, hi: most * h, softness };
-            (law, off * h * stiffness * softness)
-        };
-        if let Some(spring) = self.joint.spring.filter(|spring| spring.stiffness + spring.damping > 0.0) {
-            let (law, rate) = soft(spring.stiffness, spring.damping, spring.rest - value, f64::INFINITY);
-            made.add(axis, row(law, rate, rate));
-        }
-        if let Some(motor) = motor
-            && let MotorTarget::Position(place) = motor.target
-            && motor.stiffness > 0.0
-        {
-            let (law, rate) = soft(motor.stiffness, motor.damping, place - value, motor.most);
-            made.add(axis, row(law, rate, rate));
-        }
-        if self.joint.friction > 0.0 {
-            let most = self.joint.friction * h;
-            made.add(axis, row(Law::Range { lo: -most, hi: most, softness: 0.0 }, 0.0, 0.0));
+        for (number, (law, rate)) in self.joint.laws_of_forces(value, h).into_iter().enumerate() {
+            let part = JointPart::Force { joint: made.number, number };
+            made.add(axis, JointRow { part, ..row(law, rate, rate) });
         }
     }
 }

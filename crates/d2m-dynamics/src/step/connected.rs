@@ -126,7 +126,8 @@ impl Step<'_> {
         let sim = &mut *self.sim;
         let end = if let Occasion::Plan { until } = occasion { until } else { self.end };
         let (step, passed) = (sim.options.step, time - self.start);
-        let ahead = Ahead { length: end - time, step, forces: !occasion.is_event(), passed, spent: 0.0 };
+        let ahead = Ahead { length: end - time, step, passed, spent: 0.0 };
+        let is_solved_again = matches!(occasion, Occasion::Expected | Occasion::Plan { .. });
         let mut next = Vec::new();
         for (number, joined) in sim.joints.iter_mut().enumerate() {
             let Err(place) = group.joints.binary_search(&number) else { continue };
@@ -136,6 +137,7 @@ impl Step<'_> {
             group.joints.insert(place, number);
             let pair = joined.bodies.map(|i| sim.bodies[i].at(time));
             joined.look([&pair[0], &pair[1]]);
+            joined.acted.begin(time, is_solved_again);
             let ahead = Ahead { spent: self.spent.get(&number).copied().unwrap_or_default(), ..ahead };
             group.contacts.extend(joined.rows(number, [&pair[0], &pair[1]], ahead));
             let is_new =

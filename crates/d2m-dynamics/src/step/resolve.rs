@@ -85,6 +85,9 @@ impl Step<'_> {
                 return Err(self.too_fast(&part, time));
             }
             for push in &part.bodies {
+                for joint in part.rests.iter().filter_map(ContactPoint::joint) {
+                    self.sim.joints[joint].acted.fly_until(push.horizon);
+                }
                 let body = &mut self.sim.bodies[push.body];
                 body.push(push.impact);
                 body.push(push.rest);

@@ -1,0 +1,84 @@
+//! Springs, soft motors and friction of joints: forces, whose impulse in a flight depends on how long it is.
+//!
+//! A flight may end before its step does, where joints are not met at the end of a longer one, where a
+//! kinematic body begins its next flight, or at an event. Up to where its flight was planned to end a force has
+//! acted by the impulse that it was solved with; the next flight has its impulse from there on.
+
+use crate::joint::description::{Joint, MotorTarget};
+use d2m_contact::Law;
+
+/// A force along the value of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Force {
+    Spring,
+    Motor,
+    Friction,
+}
+
+/// Until when the forces of a joint have acted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Acted {
+    /// By the impulses of the last solution, and of the one before, which may take its place.
+    until: f64,
+    before: f64,
+    /// From when on they act in the next flight.
+    pub(crate) from: f64,
+}
+
+impl Acted {
+    /// A flight begins at this time, with other impulses than the last solution has found or after these.
+    pub(crate) fn begin(&mut self, time: f64, is_solved_again: bool) {
+        if !is_solved_again {
+            self.before = self.until;
+        }
+        self.from = time.max(self.before);
+    }
+
+    /// That flight is planned to end at this time.
+    pub(crate) fn fly_until(&mut self, end: f64) {
+        self.until = self.before.max(end);
+    }
+}
+
+impl Joint {
+    /// The laws of the joint's forces, and their rates, if they act for this time.
+    pub(crate) fn laws_of_forces(&self, value: f64, time: f64) -> Vec<(Law, f64)> {
+        self.forces().map(|force| self.law_of(force, value, time)).collect()
+    }
+
+    fn forces(&self) -> impl Iterator<Item = Force> {
+        let spring = self.spring.filter(|spring| spring.stiffness + spring.damping > 0.0);
+        let is_soft = |target: MotorTarget| matches!(target, MotorTarget::Position(_));
+        let motor = self.motor.filter(|motor| motor.stiffness > 0.0 && is_soft(motor.target));
+        let friction = self.friction > 0.0;
+        let forces =
+            [spring.map(|_| Force::Spring), motor.map(|_| Force::Motor), friction.then_some(Force::Friction)];
+        forces.into_iter().flatten()
+    }
+
+    /// The law of a force that acts for this time, and its rate. Springs and motors are implicit: they have the
+    /// force of the value and the rate at the end, so that no stiffness is too large.
+    fn law_of(&self, force: Force, value: f64, time: f64) -> (Law, f64) {
+        let soft = |stiffness: f64, damping: f64, off: f64, most: f64| {
+            let softness = 1.0 / (time * (time * stiffness + damping));
+            let law = Law::Range { lo: -most * time, hi: most * time, softness };
+            (law, off * time * stiffness * softness)
+        };
+        let none = (Law::Range { lo: 0.0, hi: 0.0, softness: 0.0 }, 0.0);
+        match (force, self.spring, self.motor) {
+            _ if time <= 0.0 => none,
+            (Force::Spring, Some(spring), _) => {
+                soft(spring.stiffness, spring.damping, spring.rest - value, f64::INFINITY)
+            }
+            (Force::Motor, _, Some(motor)) => {
+                let (MotorTarget::Velocity(aim) | MotorTarget::Position(aim)) = motor.target;
+                soft(motor.stiffness, motor.damping, aim - value, motor.most)
+            }
+            (Force::Friction, ..) => {
+                let most = self.friction * time;
+                (Law::Range { lo: -most, hi: most, softness: 0.0 }, 0.0)
+            }
+            (Force::Spring | Force::Motor, ..) => none,
+        }
+    }
+}
