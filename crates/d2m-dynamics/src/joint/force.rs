@@ -16,13 +16,21 @@ enum Force {
 }
 
 /// Until when the forces of a joint have acted.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Acted {
     /// By the impulses of the last solution, and of the one before, which may take its place.
     until: f64,
     before: f64,
     /// From when on they act in the next flight.
     pub(crate) from: f64,
+}
+
+impl Default for Acted {
+    /// They have never acted.
+    fn default() -> Self {
+        let never = f64::NEG_INFINITY;
+        Self { until: never, before: never, from: never }
+    }
 }
 
 impl Acted {
