@@ -155,6 +155,7 @@ pub struct ContactPoint {
 impl ContactPoint {
     /// Two bodies that touch, without an impulse; the arms lead from their centers to where they do, the unit normal from a to b. It has no
     /// features (zeros) and no place: the point, the distance and the gap are zero.
+    #[inline]
     #[must_use]
     pub fn new([a, b]: [usize; 2], [arm_a, arm_b]: [DVec3; 2], normal: DVec3, material: Material) -> Self {
         Self {
@@ -289,6 +290,7 @@ pub fn add_impulses(contacts: &[ContactPoint], added: &mut [Momenta], place: imp
 /// let [t, u] = d2m_contact::tangents(DVec3::Z);
 /// assert_eq!(t.cross(u), DVec3::Z);
 /// ```
+#[inline]
 #[must_use]
 pub fn tangents(normal: DVec3) -> [DVec3; 2] {
     let sign = if normal.z < 0.0 { -1.0 } else { 1.0 };

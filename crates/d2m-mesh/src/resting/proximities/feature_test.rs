@@ -99,6 +99,17 @@ impl Box3 {
         Self { lo: point, hi: point }
     }
 
+    #[inline]
+    fn of_triangle(&[a, b, c]: &[DVec3; 3]) -> Self {
+        Self { lo: a.min(b).min(c), hi: a.max(b).max(c) }
+    }
+
+    #[inline]
+    fn of_edges(&[a, b, c]: &[DVec3; 3]) -> [Self; 3] {
+        [Self::of(a, b), Self::of(b, c), Self::of(c, a)]
+    }
+
+    #[inline]
     fn of(one: DVec3, other: DVec3) -> Self {
         Self { lo: one.min(other), hi: one.max(other) }
     }
@@ -138,8 +149,9 @@ impl<'a> FeatureTest<'a> {
     /// Tests all features that the two triangles own, and the two faces against the vertices.
     pub(super) fn compare(&mut self, triangles: [u32; 2], placed: &[[DVec3; 3]; 2]) {
         let owned = [0, 1].map(|body| *self.adjacency[body].owned(triangles[body]));
-        let faces = placed.map(|[a, b, c]| Box3 { lo: a.min(b).min(c), hi: a.max(b).max(c) });
-        let edges = placed.map(|[a, b, c]| [Box3::of(a, b), Box3::of(b, c), Box3::of(c, a)]);
+        // Mapped as an array these were copied twice: 3 % of the time of a heap.
+        let faces = [Box3::of_triangle(&placed[0]), Box3::of_triangle(&placed[1])];
+        let edges = [Box3::of_edges(&placed[0]), Box3::of_edges(&placed[1])];
         let limit = self.limit;
         let has_vertex = |body: usize, k: usize| {
             owned[body].vertices[k] != NONE && faces[1 - body].is_within(limit, &Box3::at(placed[body][k]))
