@@ -3,8 +3,13 @@
 use d2m_interval::Interval;
 use glam::{DMat3, DVec3};
 
+/// Eigenvalues are mean + 2 s cos φ with the size s of what is left without the mean. Below this part of the mean s is rounding (fewer than 2¹²
+/// operations of 2⁻⁵³ each made the matrix), which has no direction: the mean stands for all three, off by 2 s at most.
+const ROUND: f64 = 1e-12;
+
 /// The least and the greatest eigenvalue of a symmetric matrix, by the roots of its characteristic polynomial (Smith 1961,
-/// [doi:10.1145/355578.366316](https://doi.org/10.1145/355578.366316)), to rounding; the same bits on every platform.
+/// [doi:10.1145/355578.366316](https://doi.org/10.1145/355578.366316)), to 2e-12 of their mean, and no less than zero; the same bits
+/// on every platform. In the units of the matrix.
 ///
 /// ```
 /// use glam::{DMat3, DVec3};
@@ -17,8 +22,7 @@ pub fn extreme_eigenvalues(m: DMat3) -> [f64; 2] {
     let rest = m - DMat3::from_diagonal(DVec3::splat(mean));
     let square: f64 = rest.to_cols_array().iter().map(|x| x * x).sum();
     let size = (square / 6.0).sqrt();
-    // Rounding of the elements of a sphere's.
-    if size.is_nan() || size <= 1e-12 * mean {
+    if size.is_nan() || size <= ROUND * mean {
         return [mean, mean];
     }
     let half = (0.5 * (rest * (1.0 / size)).determinant()).clamp(-1.0, 1.0);

@@ -98,6 +98,12 @@ pub struct JointRow {
 }
 
 impl JointRow {
+    /// Along the normal of its contact, with no rate: what is coupled by it stays so, as far as the law allows.
+    #[must_use]
+    pub const fn still(law: Law) -> Self {
+        Self { is_angular: false, law, pushing: 0.0, target: 0.0, part: JointPart::Rate, is_motor: false }
+    }
+
     /// Is it of an equation, which holds whatever acts on the bodies?
     #[must_use]
     pub const fn is_equation(&self) -> bool {
@@ -215,16 +221,8 @@ impl ContactPoint {
         let [normal, arm] = tangents(angular / impulse);
         let (lo, hi) = (f64::NEG_INFINITY, f64::INFINITY);
         let law = Law::Range { lo, hi, softness: 0.0 };
-        let row = JointRow {
-            is_angular: false,
-            law,
-            pushing: 0.0,
-            target: 0.0,
-            part: JointPart::Rate,
-            is_motor: false,
-        };
         let none = Self::new([body; 2], [arm * 0.5, arm * -0.5], normal, Material::new(0.0, 0.0));
-        Some(Self { row: Some(row), impulse, ..none })
+        Some(Self { row: Some(JointRow::still(law)), impulse, ..none })
     }
 
     /// The same contact of bodies that slip, without an impulse.

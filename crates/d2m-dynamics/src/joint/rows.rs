@@ -304,14 +304,7 @@ impl Joined {
             made.arms[0] = arms[0] + (points[1] - points[0]);
         }
         let law = Law::Range { lo: f64::NEG_INFINITY, hi: f64::INFINITY, softness: 0.0 };
-        let equal = JointRow {
-            is_angular: false,
-            law,
-            pushing: 0.0,
-            target: 0.0,
-            part: JointPart::Rate,
-            is_motor: false,
-        };
+        let equal = JointRow::still(law);
         let (linear, angular) = self.directions(pair[0].orientation);
         for direction in linear {
             made.add(direction, equal);
