@@ -1,6 +1,6 @@
 //! What moves come what may: drums, stirrers, presses, jaws, paddles, shafts in bearings.
 use super::super::scene::{Error, Scene, tree};
-use super::law::{gets_along, is_crushed, never_more, stays};
+use super::law::{Law, gets_along, is_crushed, never_more, stays};
 use super::solids::{cuboid, prism, regular, ring};
 use super::trial::{Case, GAP, Trial, crushing, floor, free, still, under};
 use d2m::bvh::MeshTree;
@@ -85,6 +85,14 @@ pub(super) fn cases(cases: &mut Vec<Case>, seed: u64) {
                 let build = move |scene| bearing(scene, sides, rate, friction);
                 cases.push(Case::new("bearing", variant, 0.5, build).with_options(fine));
             }
+        }
+    }
+    for sides in [12, 48] {
+        for gap in [1e-4, 1e-5] {
+            let variant = format!("of {sides} sides that turns a wheel; a gap of {gap:e}");
+            let build = move |scene| axle(scene, sides, 30.0);
+            let fine = SimulationOptions::default().with_gap(gap);
+            cases.push(Case::new("axle", variant, 0.5, build).with_options(fine));
         }
     }
 }
@@ -286,4 +294,21 @@ fn bearing(mut scene: Scene, sides: u32, rate: f64, friction: f64) -> Result<Tri
     let most = bore - radius * (PI / f64::from(sides)).cos();
     let out = move |poses: &[Pose]| poses[k].translation.truncate().length();
     under(scene, vec![never_more("distance from the axis", most, out)])
+}
+
+/// A wheel on an axle of as many sides, with less play than the axle's corners need to turn in its bore: it turns with the axle.
+fn axle(mut scene: Scene, sides: u32, rate: f64) -> Result<Trial, Error> {
+    let (radius, play) = (0.5, 1e-3);
+    let axle = free("axle", &prism(&regular(sides, radius - play), 0.3)?, 0.2);
+    scene.drive(axle, ConstantTwist::REST.with_angular_velocity(DVec3::Z * rate))?;
+    let wheel = free("wheel", &ring(sides, [radius, 0.8], 0.15)?, 0.2);
+    let wheel = scene.add(wheel.with_angular_velocity(DVec3::Z * rate / 6.0))?;
+    let k = wheel.index();
+    let most = play / (PI / f64::from(sides)).cos();
+    let out = move |poses: &[Pose]| poses[k].translation.truncate().length();
+    let turns = Law::new(format!("the wheel turns at {rate}"), move |ran| {
+        let found = ran.scene.simulation.angular_velocity(wheel).z;
+        ((found - rate).abs() > 0.01 * rate).then(|| format!("it turns at {found:.3e}"))
+    });
+    under(scene, vec![never_more("distance from the axis", most, out), turns])
 }
