@@ -31,7 +31,7 @@ const ROUNDING: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// The part of the room that is made in any case. Without it a pair that has lost its distance would never
 /// get it back. It lifts bodies by no more than the gaps that are missing.
-const LEAST_PART: f64 = 0.25;
+pub(crate) const LEAST_PART: f64 = 0.25;
 
 /// A body of an island whose velocities have been solved.
 #[derive(Clone, Copy, Debug)]
@@ -115,8 +115,14 @@ fn towards_rigid(entries: &[Entry], anchor: Anchor) -> Vec<Velocity> {
 }
 
 /// Brakes the velocities against each other, or against the anchor, by the least part with which the accounts
-/// keep their limit. Where that is not enough, only a part of the room is made. `length`: of the flight.
-pub(crate) fn balance(entries: &[Entry], anchor: Anchor, length: f64) -> Balance {
+/// keep their limit. Where that is not enough, only a part of the room is made. `length`: of the flight; `most`:
+/// of these brakes the greatest part that may be used.
+pub(crate) fn balance(
+    entries: &[Entry],
+    anchor: Anchor,
+    length: f64,
+    most: impl Fn(&[Velocity]) -> f64,
+) -> Balance {
     let sum = |value: &dyn Fn(&Entry) -> f64| entries.iter().map(value).sum::<f64>();
     let (before, after) = (sum(&|e| e.kinetic(&e.before)), sum(&|e| e.kinetic(&e.after)));
     let lift = sum(&|e| e.lift(length));
@@ -136,7 +142,7 @@ pub(crate) fn balance(entries: &[Entry], anchor: Anchor, length: f64) -> Balance
         b += d.linear.dot(e.after.linear) + angular.dot(e.inverse_inertia * e.after.angular);
     }
     let added = |s: f64| s * b + s * s * a;
-    let deepest = if a > 0.0 { (-0.5 * b / a).clamp(0.0, 1.0) } else { 0.0 };
+    let deepest = if a > 0.0 { (-0.5 * b / a).clamp(0.0, 1.0).min(most(&towards)) } else { 0.0 };
     let braked = if added(deepest) <= -excess {
         // The smaller root of a s² + b s + excess, in the form that does not cancel; b < 0 here.
         let root = (b * b - 4.0 * a * excess).max(0.0).sqrt();
@@ -201,7 +207,7 @@ mod tests {
             let at = |n: u32| f64::from((k * 37 + n * 61) % 101) / 50.0 - 1.0;
             let entries = pair(DVec3::new(at(1), at(2), at(3)) * 4.0);
             let [before, after] = [entries.map(|e| e.before), entries.map(|e| e.after)];
-            let balance = balance(&entries, Anchor::Bodies, 0.01);
+            let balance = balance(&entries, Anchor::Bodies, 0.01, |_| 1.0);
             if energy(&entries, &after) <= energy(&entries, &before) {
                 assert_eq!(balance.braking, None);
                 continue;
@@ -222,7 +228,7 @@ mod tests {
     fn accounts_are_paid_from_velocities_against_each_other() {
         let mut entries = pair(DVec3::ZERO);
         (entries[0].gained, entries[0].limit) = (0.15, 0.1);
-        let balance = balance(&entries, Anchor::Bodies, 0.01);
+        let balance = balance(&entries, Anchor::Bodies, 0.01, |_| 1.0);
         let end = braked(&entries, &balance);
         let taken = energy(&entries, &entries.map(|e| e.before)) - energy(&entries, &end);
         assert!((taken - 0.05).abs() < 1e-9 && (balance.gained - 0.1).abs() < 1e-9, "{taken}");
@@ -239,7 +245,7 @@ mod tests {
         one.room.linear = DVec3::Y * 0.1;
         // 0.1 for 0.01 s is a lift by 1e-3, which costs 0.02.
         one.limit = 0.015;
-        let balance = balance(&[one], Anchor::World, 0.01);
+        let balance = balance(&[one], Anchor::World, 0.01, |_| 1.0);
         assert!((balance.part - 0.75).abs() < 1e-9, "{balance:?}");
         assert!(braked(&[one], &balance)[0].linear.distance(one.after.linear) < 1e-12);
     }

@@ -142,11 +142,29 @@ impl Attempt {
     /// the last of the gap in no time, and the next ones half of what is left then.
     fn lasts(&self, added: impl Fn(usize) -> f64) -> bool {
         let length = LASTING * self.span.remaining;
-        self.found.contacts.iter().enumerate().all(|(k, contact)| {
+        let keeps_some = |(k, contact): (usize, &ContactPoint)| {
+            contact.shared_room() + (self.system.rate(k) + added(k)) * length >= 0.0
+        };
+        self.tight().all(keeps_some)
+    }
+
+    /// The contacts with hardly any room left, with their indices.
+    fn tight(&self) -> impl Iterator<Item = (usize, &ContactPoint)> {
+        self.found.contacts.iter().enumerate().filter(|(_, contact)| {
             let is_met = contact.row.is_none() && !contact.is_expected;
-            let is_tight = is_met && contact.distance < LAST * contact.gap;
-            !is_tight || contact.shared_room() + (self.system.rate(k) + added(k)) * length >= 0.0
+            is_met && contact.distance < LAST * contact.gap
         })
+    }
+
+    /// The greatest part of these changes of the velocities, one for each body, that leaves contacts with hardly
+    /// any room `least` of the rate at which they open.
+    pub(crate) fn most_of(&self, changes: impl Fn(usize) -> Velocity, least: f64) -> f64 {
+        let most = |(k, contact): (usize, &ContactPoint)| {
+            let opens = self.system.rate(k);
+            let closes = -contact.rate(changes(contact.a), changes(contact.b));
+            if opens > 0.0 && closes > 0.0 { (1.0 - least) * opens / closes } else { 1.0 }
+        };
+        self.tight().map(most).fold(1.0, f64::min)
     }
 }
 

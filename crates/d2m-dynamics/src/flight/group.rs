@@ -2,7 +2,7 @@
 
 use crate::SimulationOptions;
 use crate::body::rigid_body::RigidBody;
-use crate::flight::account::{Anchor, Entry, balance};
+use crate::flight::account::{Anchor, Entry, LEAST_PART, balance};
 use crate::flight::length::Clock;
 use crate::flight::problem::Problem;
 use crate::flight::rows::{HIT, Span};
@@ -156,7 +156,14 @@ pub(crate) fn solve(
         (false, true) => Some(Anchor::World),
         (false, false) => Some(Anchor::Bodies),
     };
-    let bodies = settle(&outcomes, anchor, end, span, options);
+    let indices: Vec<usize> = outcomes.iter().map(|outcome| outcome.body).collect();
+    // Contacts with hardly any room left open by a part of their rates in any case, as room is made in any case.
+    let most = |braking: &[Velocity]| {
+        let braked =
+            |body: usize| indices.binary_search(&body).map_or_else(|_| Velocity::default(), |k| braking[k]);
+        attempt.most_of(braked, LEAST_PART)
+    };
+    let bodies = settle(&outcomes, anchor, end, span, options, most);
     Solved { bodies, impacts: hits, rests: attempt.found.contacts, residual, is_torn }
 }
 
@@ -216,6 +223,7 @@ fn settle(
     end: f64,
     span: Span,
     options: &SimulationOptions,
+    most: impl Fn(&[Velocity]) -> f64,
 ) -> Vec<Push> {
     let entry = |o: &Outcome<'_>| Entry {
         mass: o.state.mass,
@@ -233,7 +241,7 @@ fn settle(
     };
     let entries: Vec<Entry> = outcomes.iter().map(entry).collect();
     let mass: f64 = entries.iter().map(|e| e.mass).sum();
-    let sheet = anchor.map(|anchor| balance(&entries, anchor, span.remaining));
+    let sheet = anchor.map(|anchor| balance(&entries, anchor, span.remaining, most));
     let push = |(place, (o, e)): (usize, (&Outcome<'_>, &Entry))| {
         let mut push = Push {
             body: o.body,
