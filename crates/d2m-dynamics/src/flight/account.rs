@@ -234,6 +234,23 @@ mod tests {
         assert!((taken - 0.05).abs() < 1e-9 && (balance.gained - 0.1).abs() < 1e-9, "{taken}");
     }
 
+    /// Where contacts have hardly any room, brakes take no more than a part, and what is left is owed.
+    #[test]
+    fn brakes_end_where_no_room_would_be_left() {
+        let mut entries = pair(DVec3::ZERO);
+        (entries[0].gained, entries[0].limit) = (0.15, 0.1);
+        let full = balance(&entries, Anchor::Bodies, 0.01, |_| 1.0);
+        let most = |braking: &[Velocity]| {
+            assert_eq!(braking.len(), 2);
+            0.01
+        };
+        let part = balance(&entries, Anchor::Bodies, 0.01, most);
+        let [full_speed, part_speed] =
+            [&full, &part].map(|b| b.braking.as_ref().map_or(0.0, |braking| braking[0].linear.length()));
+        assert!(0.0 < part_speed && part_speed < 0.5 * full_speed, "{part_speed} {full_speed}");
+        assert!(part.gained > part.limit, "{part:?}");
+    }
+
     /// A body that stands on the floor cannot pay for a lift: it is lifted as far as the limit of its account
     /// allows.
     #[test]

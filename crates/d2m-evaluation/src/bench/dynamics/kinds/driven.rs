@@ -1,7 +1,7 @@
 //! What moves come what may: drums, stirrers, presses, jaws, paddles, shafts in bearings.
 use super::super::scene::{Error, Scene, tree};
 use super::law::{Law, gets_along, is_crushed, never_more, stays};
-use super::solids::{cuboid, prism, regular, ring};
+use super::solids::{cuboid, globe, prism, regular, ring};
 use super::trial::{Case, GAP, Trial, crushing, floor, free, still, under};
 use d2m::bvh::MeshTree;
 use d2m::motion::{ConstantTwist, Keyframes, Pose, Span};
@@ -93,6 +93,21 @@ pub(super) fn cases(cases: &mut Vec<Case>, seed: u64) {
             let build = move |scene| axle(scene, sides, 30.0);
             let fine = SimulationOptions::default().with_gap(gap);
             cases.push(Case::new("axle", variant, 0.5, build).with_options(fine));
+        }
+    }
+    for (meridians, gap, friction, restitution) in
+        [(16, 4e-4, 0.3, 0.5), (12, 3e-6, 0.0, 0.0), (8, 1e-5, 0.3, 0.0), (12, 1e-3, 0.3, 0.0)]
+    {
+        let variant =
+            format!("of {meridians} meridians that turn; friction {friction}, restitution {restitution}");
+        let build = move |scene| shells(scene, meridians, friction, restitution);
+        let fine = SimulationOptions::default().with_gap(gap);
+        cases.push(Case::new("shells", variant, 0.6, build).with_options(fine));
+    }
+    for sides in [3, 4, 6] {
+        for rate in [5.0, 20.0] {
+            let variant = format!("of {sides} sides in a hole that turns at {rate} rad/s");
+            cases.push(Case::new("peg", variant, 1.0, move |scene| peg(scene, sides, rate)));
         }
     }
 }
@@ -311,4 +326,43 @@ fn axle(mut scene: Scene, sides: u32, rate: f64) -> Result<Trial, Error> {
         ((found - rate).abs() > 0.01 * rate).then(|| format!("it turns at {found:.3e}"))
     });
     under(scene, vec![never_more("distance from the axis", most, out), turns])
+}
+
+/// A globe within three shells, each of which turns freely in the next one; the outermost turns with 30 rad/s and more.
+fn shells(mut scene: Scene, meridians: u32, friction: f64, restitution: f64) -> Result<Trial, Error> {
+    let spin = DVec3::new(30.0, 9.0, 6.0);
+    // From a sphere through the corners of a shell to one within its faces, with a clearance of a hundredth.
+    let within = (PI / f64::from(meridians)).cos().powi(2) * 0.99;
+    let mut radius = 1.0;
+    let shell = free("shell 0", &globe(meridians, [1.1 * radius, radius])?, friction);
+    scene.drive(shell, ConstantTwist::REST.with_angular_velocity(spin))?;
+    let mut inside = Vec::new();
+    for k in 1..4 {
+        radius *= within;
+        let hollow = if k < 3 { 0.9 * radius } else { 0.0 };
+        let body = free(format!("shell {k}"), &globe(meridians, [radius, hollow])?, friction);
+        let body = body.with_restitution(restitution).with_angular_velocity(DVec3::new(30.0, 0.0, -30.0));
+        inside.push(scene.add(body)?.index());
+        radius *= 0.9;
+    }
+    // Corners are no faster than those of the outermost shell, and the others fall by no more than their play.
+    let out = move |poses: &[Pose]| inside.iter().map(|&k| poses[k].translation.length()).fold(0.0, f64::max);
+    under(scene, vec![never_more("distance from the center", 1.0, out)])
+}
+
+/// A peg without friction in a hole of its own shape that turns about its axis, which is level: nothing pushes the peg along that.
+fn peg(mut scene: Scene, sides: u32, rate: f64) -> Result<Trial, Error> {
+    let (radius, play) = (0.5, 2e-3);
+    let hole = free("hole", &ring(sides, [radius, 1.5], 0.5)?, 0.0);
+    scene.drive(hole, ConstantTwist::REST.with_angular_velocity(DVec3::Z * rate))?;
+    let peg = free("peg", &prism(&regular(sides, radius - play), 0.5)?, 0.0);
+    let peg = scene.add(peg)?;
+    let k = peg.index();
+    let along = move |poses: &[Pose]| poses[k].translation.z.abs();
+    let fastest = 4.0 * rate * radius;
+    let slow = Law::new(format!("the peg is no faster than {fastest}"), move |ran| {
+        let found = ran.scene.simulation.angular_velocity(peg).length() * radius;
+        (found > fastest).then(|| format!("its corners have {found:.3e} at the end"))
+    });
+    under(scene, vec![never_more("the way along the axis", 0.2 * radius, along), slow])
 }

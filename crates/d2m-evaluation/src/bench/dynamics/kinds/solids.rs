@@ -3,7 +3,7 @@ use super::super::scene::{Error, tree};
 use d2m::TriMesh;
 use d2m::bvh::MeshTree;
 use glam::{DVec2, DVec3};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// A box with these half sizes.
@@ -50,6 +50,36 @@ pub(super) fn ring(sides: u32, [inner, outer]: [f64; 2], half: f64) -> Result<Ar
     Ok(Arc::new(MeshTree::new(TriMesh::try_new(vertices, triangles)?)))
 }
 
+/// A globe about z of so many meridians and half as many parallels, all corners on a sphere of the first radius; hollow from the second radius
+/// on inward, unless that is zero.
+pub(super) fn globe(meridians: u32, [outer, inner]: [f64; 2]) -> Result<Arc<MeshTree>, Error> {
+    let parallels = meridians / 2;
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for radius in [outer, inner].into_iter().filter(|&radius| radius > 0.0) {
+        let first = vertices.len() as u32;
+        vertices.push(DVec3::Z * radius);
+        for k in 1..parallels {
+            let (sine, cosine) = (PI * f64::from(k) / f64::from(parallels)).sin_cos();
+            vertices.extend(regular(meridians, radius * sine).into_iter().map(|p| p.extend(radius * cosine)));
+        }
+        let last = vertices.len() as u32;
+        vertices.push(DVec3::NEG_Z * radius);
+        let at = |parallel: u32, meridian: u32| first + 1 + (parallel - 1) * meridians + meridian % meridians;
+        for i in 0..meridians {
+            let mut faces =
+                vec![[first, at(1, i), at(1, i + 1)], [last, at(parallels - 1, i + 1), at(parallels - 1, i)]];
+            for k in 1..parallels - 1 {
+                faces.push([at(k, i), at(k + 1, i), at(k + 1, i + 1)]);
+                faces.push([at(k, i), at(k + 1, i + 1), at(k, i + 1)]);
+            }
+            triangles.extend(
+                faces.into_iter().map(|[a, b, c]| if radius == outer { [a, b, c] } else { [a, c, b] }),
+            );
+        }
+    }
+    Ok(Arc::new(MeshTree::new(TriMesh::try_new(vertices, triangles)?)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -63,6 +93,8 @@ mod tests {
         for (solid, volume) in [
             (prism(&triangle, 1.0).unwrap(), 1.0),
             (ring(12, [0.5, 1.0], 0.25).unwrap(), 0.5 * (area(1.0) - area(0.5))),
+            // Two pyramids of four sides on each other, less a smaller one.
+            (globe(4, [1.0, 0.5]).unwrap(), 4.0 / 3.0 * (1.0 - 0.125)),
         ] {
             assert!(Topology::new(solid.mesh()).is_watertight());
             let six = |k: usize| {
