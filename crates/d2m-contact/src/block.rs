@@ -44,8 +44,8 @@ impl Block {
         let (law, normal, arms) = match contact.row {
             Some(row) if row.is_angular => (row.law, DVec3::ZERO, [n; 2]),
             Some(row) => (row.law, n, across),
-            None if friction > 0.0 => (Law::Cone { friction }, n, arms),
-            None => (Law::PUSH, n, across),
+            None if friction == 0.0 => (Law::PUSH, n, across),
+            None => (Law::Cone { friction }, n, arms),
         };
         let [t, u] = contact.tangents;
         let mut block = Self {

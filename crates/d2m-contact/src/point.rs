@@ -26,7 +26,8 @@ pub struct Material {
 }
 
 impl Material {
-    /// These numbers, unchecked: with others than their fields say a solution obeys no law, and its residual tells.
+    /// These numbers, unchecked: with others than their fields say a solution obeys no law. Its residual tells: it is infinite for such a
+    /// friction.
     #[must_use]
     pub const fn new(restitution: f64, friction: f64) -> Self {
         Self { restitution, friction }

@@ -222,10 +222,16 @@ impl System {
     /// d |λ − P(λ − (u − b + s e)/d)|,     s = μ |u_t| (de Saxcé), d: the scale of the block
     /// ```
     ///
-    /// which is zero in a solution and nowhere else. The velocities follow from the impulses to rounding.
+    /// which is zero in a solution and nowhere else. It is infinite where numbers are none or too large for an answer, or a friction is negative.
+    /// The velocities follow from the impulses to rounding.
     #[must_use]
     pub fn residual(&self, targets: &[f64]) -> f64 {
-        targets.iter().enumerate().map(|(k, &target)| self.own_residual(k, target)).fold(0.0, f64::max)
+        let own = |(k, &target): (usize, &f64)| {
+            let own = self.own_residual(k, target);
+            // The maximum of numbers would leave out what is none.
+            if own.is_nan() { f64::INFINITY } else { own }
+        };
+        targets.iter().enumerate().map(own).fold(0.0, f64::max)
     }
 
     /// The natural map of one block.
@@ -234,6 +240,11 @@ impl System {
         let (block, impulse) = (&self.blocks[k], &self.impulses[k]);
         if block.scale == 0.0 || target == f64::NEG_INFINITY {
             return 0.0;
+        }
+        // Negative, or none: there is no such law.
+        let friction = block.law.friction();
+        if friction.is_nan() || friction < 0.0 {
+            return f64::INFINITY;
         }
         // A contact without an impulse that opens obeys the law however it slides.
         let rates = block.rates(|i| self.bodies[i].velocity);
@@ -274,5 +285,54 @@ impl System {
     /// No rate: of a body that nothing drives.
     pub(super) fn zero() -> Velocity {
         Velocity { linear: DVec3::ZERO, angular: DVec3::ZERO }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Accuracy, Material, Start};
+    use glam::{DMat3, DVec3};
+
+    /// A ball that falls on the floor, with one number that is of no use: no solution is claimed.
+    #[test]
+    fn what_has_no_answer_has_an_infinite_residual() {
+        let velocity = Velocity { linear: DVec3::new(0.5, -1.0, 0.0), angular: DVec3::ZERO };
+        let ball = SolverBody { inverse_mass: 1.0, inverse_inertia: DMat3::IDENTITY, velocity };
+        let contact = ContactPoint::new([0, 1], [DVec3::Y, DVec3::NEG_Y], DVec3::Y, Material::new(0.0, 0.5));
+        let residual = |ball: SolverBody, contact: ContactPoint, target: f64| {
+            let mut system = System::new(vec![SolverBody::FIXED, ball], &[contact], |body| body);
+            let solved = system.solve(&[target], Accuracy::exact(1e-9), Start::Sticking);
+            let found = system.residual(&[target]);
+            assert!(solved >= found || found <= 1e-9 || solved.is_infinite(), "{solved} {found}");
+            found
+        };
+        assert!(residual(ball, contact, 0.0) <= 1e-9);
+        for useless in [f64::NAN, f64::INFINITY, 1e200] {
+            let linear = DVec3::new(0.0, -useless, 0.0);
+            let fast = SolverBody { velocity: Velocity { linear, ..velocity }, ..ball };
+            let light = SolverBody { inverse_mass: useless, ..ball };
+            let thin = SolverBody { inverse_inertia: DMat3::IDENTITY * useless, ..ball };
+            let long = ContactPoint { arm_b: DVec3::new(useless, -1.0, 0.0), ..contact };
+            let askew = ContactPoint { normal: DVec3::Y * useless, ..contact };
+            let found = [
+                residual(light, contact, 0.0),
+                residual(thin, contact, 0.0),
+                residual(ball, long, 0.0),
+                residual(ball, askew, 0.0),
+                residual(fast, contact, 0.0),
+                residual(ball, contact, useless),
+            ];
+            // What has an answer is found, however large its numbers are.
+            assert!(found.iter().all(|&found| found.is_infinite() || found <= 1e-9), "{useless}: {found:?}");
+            assert!(
+                useless == 1e200 || found.iter().all(|found| found.is_infinite()),
+                "{useless}: {found:?}"
+            );
+        }
+        for friction in [-1.0, f64::NAN] {
+            let material = Material::new(0.0, friction);
+            assert!(residual(ball, ContactPoint { material, ..contact }, 0.0).is_infinite());
+        }
     }
 }
