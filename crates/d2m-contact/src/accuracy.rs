@@ -53,6 +53,11 @@ impl Accuracy {
         Self { precision, relative: 0.0, aim: 1.0, company, slow, still: None, beside_sleepers: false }
     }
 
+    /// Is it that of [`Self::exact`]? Flights are tried shorter where there is no solution; who asks for an exact one can try nothing else.
+    pub(super) fn is_exact(self) -> bool {
+        self.slow == f64::INFINITY
+    }
+
     pub(super) fn in_crowd(self) -> bool {
         self.company != Company::Few
     }
