@@ -236,9 +236,6 @@ impl Joined {
     /// Keeps the value where flights end: poses give it up to full turns, and flights give the number of
     /// these.
     pub(crate) fn look(&mut self, pair: [&RigidBody; 2]) {
-        if self.is_gone {
-            return;
-        }
         self.value = self.value(pair);
         self.looked = pair[0].time.max(pair[1].time);
     }

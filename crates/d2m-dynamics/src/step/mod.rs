@@ -170,7 +170,7 @@ impl<'s> Step<'s> {
             body.damp(self.end - self.start);
         }
         let sim = &mut *self.sim;
-        for joined in &mut sim.joints {
+        for joined in sim.joints.iter_mut().filter(|joined| !joined.is_gone()) {
             joined.look(joined.bodies.map(|i| &sim.bodies[i]));
         }
         self.resolve(self.start, awake, Occasion::Start)?;
