@@ -7,6 +7,7 @@ use crate::body::turning::Pull;
 use crate::rest::quiet::Surface;
 use d2m_bvh::Posed;
 use d2m_contact::{Momenta, Velocity};
+use d2m_interval::Interval;
 use d2m_motion::{ConstantTwist, Pose, RigidMotion};
 use glam::{DMat3, DQuat, DVec3};
 use std::borrow::Cow;
@@ -236,6 +237,24 @@ impl RigidBody {
             }
             self.time = time;
             self.lead = self.lead.map(|lead| lead - elapsed);
+        }
+    }
+
+    /// Lets the velocities fade from its time until the end of a step. Where an error ended the last one early
+    /// they have faded for a part of that already.
+    pub(crate) fn damp(&mut self, end: f64) {
+        let time = end - self.time.max(self.faded);
+        if !self.is_dynamic() || time <= 0.0 {
+            return;
+        }
+        self.faded = end;
+        // The nearest number to the exponential, with the same bits everywhere.
+        let factor = |rate: f64| Interval::point(-rate * time).exp().mid();
+        if self.damping.linear > 0.0 {
+            self.momentum *= factor(self.damping.linear);
+        }
+        if self.damping.angular > 0.0 {
+            self.angular_momentum *= factor(self.damping.angular);
         }
     }
 

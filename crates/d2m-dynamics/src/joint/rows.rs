@@ -30,6 +30,10 @@ pub(crate) struct Joined {
     looked: f64,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) acted: Acted,
+    /// The impulse of its motor, in a step that an error ended early, beyond that of its largest force in the time
+    /// that was flown.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) owed: f64,
     /// Was the joint removed, or one of its bodies?
     is_gone: bool,
 }
@@ -78,6 +82,7 @@ impl Joined {
             value: 0.0,
             looked: a.time.max(b.time),
             acted: Acted::default(),
+            owed: 0.0,
             is_gone: false,
         })
     }
@@ -136,6 +141,8 @@ impl Joined {
             Some(("arms", format!("{:?}", self.arms)))
         } else if !(self.axes.iter().all(|axis| axis.is_normalized()) && self.turn.is_normalized()) {
             Some(("axes", format!("{:?}, {}", self.axes, shown_turn(self.turn))))
+        } else if !is_small(DVec3::X * self.owed) {
+            Some(("motor's impulse", shown([self.owed])))
         } else {
             (!is_small(DVec3::new(self.value, self.looked, 0.0)))
                 .then(|| ("value and its time", shown([self.value, self.looked])))

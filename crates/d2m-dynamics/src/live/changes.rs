@@ -98,6 +98,7 @@ impl Simulation {
         }
         let mut changed = own.clone();
         changed.set_velocity(Velocity { linear, angular });
+        changed.faded = f64::NEG_INFINITY;
         changed.check_momenta(given, [DVec3::ZERO; 2])?;
         self.bodies[place] = changed;
         self.drop_known(place);

@@ -83,8 +83,9 @@ impl RigidBody {
         };
         let made = Self::try_new(&described, Arc::clone(&self.faces), time)?;
         let (force, torque) = if made.is_dynamic() { (self.force, self.torque) } else { Default::default() };
+        let faded = if self.is_dynamic() { self.faded } else { made.faded };
         let (id, role, version) = (self.id, self.role, self.version);
-        Ok(Self { id, role, force, torque, version, ..made })
+        Ok(Self { id, role, faded, force, torque, version, ..made })
     }
 
     /// Starts anew at the present place: the last flight is forgotten.

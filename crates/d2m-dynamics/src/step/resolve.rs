@@ -2,15 +2,14 @@
 
 use super::connected::{Group, Sleepers};
 use super::{FEW_ITEMS, Occasion, Step};
+use crate::StepError;
 use crate::body::rigid_body::RigidBody;
 use crate::flight::group::{CROWD, Push, Solved, islands, solve};
 use crate::flight::length::Clock;
 use crate::flight::path::Splits;
 use crate::flight::solved_body::moves;
-use crate::{ContactImpulse, StepError};
 use d2m_contact::{Company, ContactPoint, Velocity};
 use d2m_mesh::parallel::map_owned;
-use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// Rounds in which bodies are added on which others press; then all bodies that contacts connect are solved.
@@ -332,41 +331,6 @@ impl Step<'_> {
         }
         append(&mut self.impulses, solved.impacts);
         append(&mut self.undoable, solved.rests);
-    }
-
-    /// Reports the impulses of the present instant, as those of the segment that ends here.
-    pub(super) fn report_impulses(&mut self) {
-        let [first, last] = [&mut self.impulses, &mut self.undoable].map(core::mem::take);
-        let impulses = || first.iter().chain(&last);
-        for contact in impulses().filter(|contact| contact.row.is_some_and(|row| row.is_motor)) {
-            if let Some(number) = contact.joint() {
-                *self.spent.entry(number).or_default() += contact.impulse;
-            }
-        }
-        let mut heard = Vec::new();
-        for contact in impulses().filter(|contact| contact.row.is_none()) {
-            let impulse = contact.total();
-            if impulse != DVec3::ZERO {
-                let impulse = ContactImpulse {
-                    a: self.sim.bodies[contact.a].id,
-                    b: self.sim.bodies[contact.b].id,
-                    point: contact.point,
-                    normal: contact.normal,
-                    impulse: -impulse,
-                    time: self.sim.time,
-                };
-                self.sim.recorder.contact(impulse);
-                let pressed = self.pressed.entry((contact.a, contact.b)).or_default();
-                for (on, pressed) in pressed.iter_mut().enumerate() {
-                    *pressed = *pressed + contact.exerted(on);
-                }
-                self.sim.begin_touch((contact.a, contact.b), impulse.time);
-                heard.push(impulse);
-            }
-        }
-        for impulse in &heard {
-            self.listener.contact(impulse);
-        }
     }
 }
 
