@@ -5,7 +5,7 @@ mod ground;
 
 use d2m_dynamics::{
     Body, BodyId, ContactImpulse, Damping, Joint, JointKind, Kind, Mass, Motor, MotorTarget, Simulation,
-    SimulationOptions, StepError,
+    SimulationOptions, Snapshot, Spring, StepError,
 };
 use d2m_motion::{ConstantTwist, Keyframes, Pose, Span};
 use glam::DVec3;
@@ -138,4 +138,49 @@ fn nothing_is_heard_of_a_step_in_which_nothing_moves() {
     simulation.remove(fast);
     simulation.step_with(&mut |_: &ContactImpulse| heard += 1).unwrap();
     assert!(heard > 0);
+}
+
+/// A state that an error has left in the middle of a step goes on with the same bits, whether it was held, or written and read: of springs,
+/// soft motors and friction, of motors of bounded force, and of velocities that fade.
+#[test]
+fn what_an_error_ended_goes_on_the_same_held_or_read() {
+    let soft = |target: MotorTarget, stiffness: f64| {
+        let mut motor = Motor::new(target);
+        (motor.stiffness, motor.most) = (stiffness, FORCE);
+        motor
+    };
+    type Drive<'d> = &'d dyn Fn(Joint) -> Joint;
+    let drives: [Drive<'_>; 4] = [
+        &|joint| joint.with_spring(Spring::new(50.0, 0.0, 0.5)),
+        &|joint| joint.with_friction(FORCE),
+        &|joint| joint.with_motor(soft(MotorTarget::Position(0.5), 50.0)),
+        &|joint| joint.with_motor(soft(MotorTarget::Velocity(50.0), 0.0)),
+    ];
+    for (k, drive) in drives.into_iter().enumerate() {
+        let (mut simulation, _) = faded_and_driven(0.02);
+        let load = Body::new("load", cube()).with_mass(Mass::Total(1.0)).with_position(DVec3::X * 30.0);
+        let load = simulation.add(&load.with_linear_velocity(DVec3::X)).unwrap();
+        let rail = Joint::new(JointKind::Prismatic, load, None, DVec3::X * 30.0).with_axis(DVec3::X);
+        simulation.add_joint(&drive(rail)).unwrap();
+        let gone = add_press(&mut simulation);
+        while simulation.step().is_ok() {}
+        let text = serde_json::to_string(&simulation.snapshot()).unwrap();
+        let read: Snapshot = serde_json::from_str(&text).unwrap();
+        assert_eq!(read, simulation.snapshot(), "{k}");
+        let mut other = simulation.clone();
+        other.restore(&read).unwrap();
+        for simulation in [&mut simulation, &mut other] {
+            for body in gone {
+                simulation.remove(body);
+            }
+            simulation.step().unwrap();
+        }
+        assert_eq!(simulation.snapshot(), other.snapshot(), "{k}");
+    }
+    // Times that no step has are refused by their name.
+    let (mut simulation, _) = faded_and_driven(0.02);
+    let text = serde_json::to_string(&simulation.snapshot()).unwrap();
+    let forged = text.replace("\"owed\":0.0", "\"owed\":1e200");
+    let said = simulation.restore(&serde_json::from_str(&forged).unwrap()).unwrap_err().to_string();
+    assert!(said.ends_with("motor's impulse 1e200 cannot be used"), "{said}");
 }

@@ -17,11 +17,15 @@ enum Force {
 
 /// Until when the forces of a joint have acted.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Acted {
     /// By the impulses of the last solution, and of the one before, which may take its place.
+    #[cfg_attr(feature = "serde", serde(with = "never"))]
     until: f64,
+    #[cfg_attr(feature = "serde", serde(with = "never"))]
     before: f64,
     /// From when on they act in the next flight.
+    #[cfg_attr(feature = "serde", serde(with = "never"))]
     pub(crate) from: f64,
 }
 
@@ -34,6 +38,11 @@ impl Default for Acted {
 }
 
 impl Acted {
+    /// Are these times, or never? A snapshot may have others.
+    pub(crate) fn is_known(&self) -> bool {
+        [self.until, self.before, self.from].into_iter().all(|time| time < f64::INFINITY)
+    }
+
     /// A flight begins at this time, with other impulses than the last solution has found or after these.
     pub(crate) fn begin(&mut self, time: f64, is_solved_again: bool) {
         if !is_solved_again {
@@ -88,5 +97,20 @@ impl Joint {
             }
             (Force::Spring | Force::Motor, ..) => none,
         }
+    }
+}
+
+/// Times that may be never, for formats without infinity.
+#[cfg(feature = "serde")]
+mod never {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes fields by reference")]
+    pub(super) fn serialize<S: Serializer>(time: &f64, to: S) -> Result<S::Ok, S::Error> {
+        (*time > f64::NEG_INFINITY).then_some(*time).serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+        Option::<f64>::deserialize(from).map(|time| time.unwrap_or(f64::NEG_INFINITY))
     }
 }

@@ -28,7 +28,7 @@ pub(crate) struct Joined {
     /// The last value, and when that was computed: angles go on beyond half a turn.
     value: f64,
     looked: f64,
-    #[cfg_attr(feature = "serde", serde(skip))]
+    #[cfg_attr(feature = "serde", serde(default))]
     pub(crate) acted: Acted,
     /// The impulse of its motor, in a step that an error ended early, beyond that of its largest force in the time
     /// that was flown.
@@ -141,6 +141,8 @@ impl Joined {
             Some(("arms", format!("{:?}", self.arms)))
         } else if !(self.axes.iter().all(|axis| axis.is_normalized()) && self.turn.is_normalized()) {
             Some(("axes", format!("{:?}, {}", self.axes, shown_turn(self.turn))))
+        } else if !self.acted.is_known() {
+            Some(("times of the forces", format!("{:?}", self.acted)))
         } else if !is_small(DVec3::X * self.owed) {
             Some(("motor's impulse", shown([self.owed])))
         } else {

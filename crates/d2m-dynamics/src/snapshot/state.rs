@@ -325,7 +325,7 @@ mod tests {
             simulation.clone().restore(&changed).unwrap_err().to_string()
         };
         let pair = "cube and cube";
-        let changes: [(&str, &str, Change); 13] = [
+        let changes: [(&str, &str, Change); 15] = [
             ("", "time", &|s| s.time = f64::INFINITY),
             ("", "steps", &|s| s.steps = u64::MAX),
             ("", "greatest energy", &|s| s.greatest_energy = f64::NAN),
@@ -337,6 +337,8 @@ mod tests {
             (pair, "pair", &|s| s.joints[0].bodies = [0, 0]),
             (pair, "limits", &|s| s.joints[0].joint.limits = Some([1.0, 0.0])),
             (pair, "friction", &|s| s.joints[0].joint.friction = -1.0),
+            (pair, "times of the forces", &|s| s.joints[0].acted.from = f64::NAN),
+            (pair, "motor's impulse", &|s| s.joints[0].owed = f64::INFINITY),
             (pair, "restitution", &|s| s.materials[0].restitution = 2.0),
             (pair, "friction", &|s| s.materials[0].friction = f64::NAN),
         ];
