@@ -2,7 +2,7 @@
 
 mod ground;
 
-use d2m_dynamics::{Body, Joint, JointKind, Simulation, SimulationOptions};
+use d2m_dynamics::{Body, BodyId, Joint, JointKind, Kind, Simulation, SimulationError, SimulationOptions};
 use glam::DVec3;
 use ground::cube;
 
@@ -33,4 +33,25 @@ fn joints_of_the_last_body_go_with_it() {
         simulation.restore(&after).unwrap();
         simulation.step().unwrap();
     }
+}
+
+/// A joint with the world that is refused leaves no world behind.
+#[test]
+fn joints_that_are_refused_change_nothing() {
+    let mut simulation = weightless();
+    let wall = simulation.add(&Body::new("wall", cube()).with_kind(Kind::Static)).unwrap();
+    let free = simulation.add(&Body::new("free", cube()).with_position(DVec3::X * 3.0)).unwrap();
+    let before = (simulation.next_index(), simulation.snapshot());
+    let hinge = |body: BodyId, point: DVec3| Joint::new(JointKind::Revolute, body, None, point);
+    for refused in [
+        hinge(free, DVec3::NAN),
+        hinge(wall, DVec3::ZERO),
+        hinge(free, DVec3::ZERO).with_axis(DVec3::ZERO),
+        Joint::new(JointKind::Fixed, free, Some(free), DVec3::ZERO),
+    ] {
+        assert!(matches!(simulation.add_joint(&refused), Err(SimulationError::BadJoint { .. })));
+        assert!((simulation.next_index(), simulation.snapshot()) == before);
+    }
+    assert_eq!(simulation.add_joint(&hinge(free, DVec3::ZERO)), Ok(0));
+    assert_eq!(simulation.next_index(), before.0 + 1);
 }

@@ -58,9 +58,8 @@ impl Joined {
     pub(crate) fn try_new(
         joint: &Joint,
         places: [usize; 2],
-        bodies: &[RigidBody],
+        [a, b]: [&RigidBody; 2],
     ) -> Result<Self, SimulationError> {
-        let [a, b] = places.map(|i| &bodies[i]);
         let bad = |name: &'static str, value: String| Err(unusable([a, b], name, value));
         Self::check_numbers(joint, [a, b])?;
         let axis = joint.axis.normalize_or_zero();
