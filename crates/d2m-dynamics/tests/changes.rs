@@ -2,9 +2,14 @@
 
 mod ground;
 
-use d2m_dynamics::{Body, BodyId, Joint, JointKind, Kind, Simulation, SimulationError, SimulationOptions};
-use glam::DVec3;
+use d2m_dynamics::{
+    Body, BodyId, Joint, JointKind, Kind, Mass, MassProperties, Simulation, SimulationError,
+    SimulationOptions,
+};
+use d2m_motion::ConstantTwist;
+use glam::{DMat3, DVec3};
 use ground::cube;
+use std::sync::Arc;
 
 fn weightless() -> Simulation {
     Simulation::new(SimulationOptions::default().with_gravity(DVec3::ZERO)).unwrap()
@@ -54,4 +59,34 @@ fn joints_that_are_refused_change_nothing() {
     }
     assert_eq!(simulation.add_joint(&hinge(free, DVec3::ZERO)), Ok(0));
     assert_eq!(simulation.next_index(), before.0 + 1);
+}
+
+/// What turns on a motion about its middle and is let go has its center of mass elsewhere: its points go on as they moved.
+#[test]
+fn points_of_what_is_let_go_go_on_as_they_moved() {
+    let (mass, center) = (2.0, DVec3::X * 0.4);
+    let inertia = DMat3::from_diagonal(DVec3::splat(0.3));
+    let turning = ConstantTwist::REST.with_angular_velocity(DVec3::Z * 2.0).with_linear_velocity(DVec3::Y);
+    let [end, of] = [DVec3::X * 0.5, DVec3::new(-0.5, 0.5, 0.2)];
+    let mut simulation = weightless();
+    let body = Body::new("thrown", cube()).with_mass(Mass::Given(MassProperties { mass, center, inertia }));
+    let thrown = simulation.add(&body.with_kind(Kind::Kinematic(Arc::new(turning)))).unwrap();
+    for _ in 0..10 {
+        simulation.step().unwrap();
+    }
+    let velocity = |simulation: &Simulation, point: DVec3| {
+        let arm = simulation.pose(thrown).transform_point(point) - simulation.position(thrown);
+        simulation.linear_velocity(thrown) + simulation.angular_velocity(thrown).cross(arm)
+    };
+    let before = [end, of].map(|point| velocity(&simulation, point));
+    simulation.set_kind(thrown, Kind::Dynamic).unwrap();
+    assert_eq!(simulation.center(thrown), center);
+    for (point, before) in [end, of].into_iter().zip(before) {
+        assert!((velocity(&simulation, point) - before).length() < 1e-12, "{before}");
+    }
+    let before = simulation.position(thrown);
+    let linear = simulation.linear_velocity(thrown);
+    simulation.step().unwrap();
+    let way = simulation.options().step * linear;
+    assert!((simulation.position(thrown) - before - way).length() < 1e-12);
 }
