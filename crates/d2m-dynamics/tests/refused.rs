@@ -3,7 +3,7 @@
 use d2m_bvh::{MeshTree, Solid, TriMesh};
 use d2m_dynamics::{
     Body, Joint, JointKind, Kind, Mass, MassError, MassProperties, Simulation, SimulationError,
-    SimulationOptions,
+    SimulationOptions, StepError,
 };
 use d2m_motion::ConstantTwist;
 use glam::{DMat3, DQuat, DVec3};
@@ -160,6 +160,26 @@ fn velocities_that_would_be_ignored_are_refused() {
                     if body == "cube" && *name == wanted),
                 "{error}"
             );
+        }
+    }
+}
+
+/// A snapshot that was written and read puts a kinematic body far from the motion that it has by now: no step leads there. It was a panic.
+#[test]
+fn no_flight_leads_to_a_motion_beyond_all_numbers() {
+    for far in [1e101, 1.5e307, 1e308] {
+        let mut simulation = empty();
+        let rest = Kind::Kinematic(Arc::new(ConstantTwist::REST));
+        let body = simulation.add(&cube().with_kind(rest)).unwrap();
+        simulation.step().unwrap();
+        let written = serde_json::to_string(&simulation.snapshot()).unwrap();
+        simulation.set_motion(body, Arc::new(ConstantTwist::REST.with_position(DVec3::X * far))).unwrap();
+        simulation.restore(&serde_json::from_str(&written).unwrap()).unwrap();
+        let before = simulation.snapshot();
+        for _ in 0..2 {
+            let time = simulation.time();
+            assert_eq!(simulation.step(), Err(StepError::TooFast { body: "cube".to_owned(), time }));
+            assert_eq!(simulation.snapshot(), before);
         }
     }
 }
