@@ -3,8 +3,8 @@
 mod ground;
 
 use d2m_dynamics::{
-    Body, BodyId, Joint, JointKind, Kind, Mass, MassProperties, Simulation, SimulationError,
-    SimulationOptions,
+    Body, BodyId, Joint, JointKind, Kind, Mass, MassProperties, Motor, MotorTarget, Simulation,
+    SimulationError, SimulationOptions,
 };
 use d2m_motion::ConstantTwist;
 use glam::{DMat3, DVec3};
@@ -89,4 +89,29 @@ fn points_of_what_is_let_go_go_on_as_they_moved() {
     simulation.step().unwrap();
     let way = simulation.options().step * linear;
     assert!((simulation.position(thrown) - before - way).length() < 1e-12);
+}
+
+/// The motor of a joint is taken off while its body is static, and does not go on when that is let go. Axes have any length but zero.
+#[test]
+fn motors_are_set_whatever_their_bodies_are() {
+    for length in [5e-324, 1e-200, 1.0, 1e155, 1e308] {
+        let mut simulation = weightless();
+        let wheel = simulation.add(&Body::new("wheel", cube())).unwrap();
+        let hinge = Joint::new(JointKind::Revolute, wheel, None, DVec3::ZERO).with_axis(DVec3::Y * length);
+        let motor = Motor::new(MotorTarget::Velocity(1.0));
+        let hinge = simulation.add_joint(&hinge.with_motor(motor)).unwrap();
+        simulation.step().unwrap();
+        assert!((simulation.angular_velocity(wheel) + DVec3::Y).length() < 1e-6);
+        simulation.set_kind(wheel, Kind::Static).unwrap();
+        let mut bad = motor;
+        bad.most = f64::NAN;
+        assert!(simulation.set_motor(hinge, Some(bad)).is_err());
+        simulation.set_motor(hinge, None).unwrap();
+        simulation.step().unwrap();
+        simulation.set_kind(wheel, Kind::Dynamic).unwrap();
+        simulation.step().unwrap();
+        assert_eq!(simulation.angular_velocity(wheel), DVec3::ZERO);
+        let snapshot = simulation.snapshot();
+        simulation.restore(&snapshot).unwrap();
+    }
 }

@@ -4,7 +4,7 @@ use crate::SimulationError;
 use crate::body::rigid_body::RigidBody;
 use crate::joint::description::{Joint, JointKind, Motor, MotorTarget};
 use crate::joint::force::Acted;
-use crate::numbers::{FINITE, NOT_NEGATIVE, UNUSABLE, is_small};
+use crate::numbers::{FINITE, NOT_NEGATIVE, UNUSABLE, direction, is_small};
 use crate::shown::{shown, shown_turn};
 use d2m_contact::{ContactPoint, JointPart, JointRow, Law, Material, tangents};
 use d2m_feature::FeaturePair;
@@ -62,7 +62,7 @@ impl Joined {
     ) -> Result<Self, SimulationError> {
         let bad = |name: &'static str, value: String| Err(unusable([a, b], name, value));
         Self::check_numbers(joint, [a, b])?;
-        let axis = joint.axis.normalize_or_zero();
+        let axis = direction(joint.axis).unwrap_or_default();
         if places[0] == places[1] || !(a.is_dynamic() || b.is_dynamic()) {
             return bad("pair", "without a dynamic body, or of a body with itself,".to_owned());
         }
@@ -87,7 +87,7 @@ impl Joined {
     }
 
     /// Checks the numbers of a joint of these bodies, given or read.
-    fn check_numbers(joint: &Joint, [a, b]: [&RigidBody; 2]) -> Result<(), SimulationError> {
+    pub(crate) fn check_numbers(joint: &Joint, [a, b]: [&RigidBody; 2]) -> Result<(), SimulationError> {
         let bad = |name: &'static str, value: String, reason: &'static str| {
             let [a, b] = [a, b].map(|body| body.name.to_string());
             Err(SimulationError::BadJoint { a, b, name, value, reason })
@@ -95,7 +95,7 @@ impl Joined {
         if !joint.point.is_finite() {
             return bad("point", shown(joint.point.to_array()), FINITE);
         }
-        if !joint.axis.is_finite() || joint.axis.normalize_or_zero() == DVec3::ZERO {
+        if direction(joint.axis).is_none() {
             return bad("axis", shown(joint.axis.to_array()), "has no direction");
         }
         if let Some(limits) = joint.limits.filter(|[lo, hi]| !(lo.is_finite() && hi.is_finite() && lo <= hi))

@@ -83,7 +83,8 @@ impl Simulation {
         self.joints.get(joint).filter(|joined| !joined.is_gone()).map(|joined| &joined.joint)
     }
 
-    /// Sets the motor of a joint, or none; a robot is driven by this from step to step. Wakes its bodies.
+    /// Sets the motor of a joint, or none; a robot is driven by this from step to step. Wakes its bodies. They may
+    /// have become static since the joint was added: the motor acts once one of them is dynamic.
     ///
     /// # Errors
     /// [`SimulationError::BadJoint`]: numbers that cannot be used. Nothing changes then.
@@ -93,7 +94,7 @@ impl Simulation {
     pub fn set_motor(&mut self, joint: usize, motor: Option<Motor>) -> Result<(), SimulationError> {
         let joined = self.there(joint);
         let changed = Joint { motor, ..joined.joint.clone() };
-        Joined::try_new(&changed, joined.bodies, joined.bodies.map(|place| &self.bodies[place]))?;
+        Joined::check_numbers(&changed, joined.bodies.map(|place| &self.bodies[place]))?;
         self.joints[joint].joint = changed;
         for place in self.joints[joint].bodies {
             self.wake_place(place);
