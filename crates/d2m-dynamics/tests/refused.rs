@@ -183,3 +183,29 @@ fn no_flight_leads_to_a_motion_beyond_all_numbers() {
         }
     }
 }
+
+/// What falls so fast that no state could say it ends the step by name, and leaves a state that can be gone back to.
+#[test]
+fn what_is_faster_than_any_state_ends_the_step() {
+    for gravity in [1e99, 1e110, 1e160, 1e308] {
+        let mut simulation = empty();
+        simulation.add(&cube()).unwrap();
+        simulation.step().unwrap();
+        simulation.set_gravity(DVec3::Y * -gravity).unwrap();
+        let before = simulation.snapshot();
+        assert_eq!(simulation.step(), Err(StepError::TooFast { body: "cube".to_owned(), time: 0.01 }));
+        assert_eq!(simulation.snapshot(), before);
+        simulation.restore(&before).unwrap();
+        simulation.set_gravity(DVec3::ZERO).unwrap();
+        simulation.step().unwrap();
+    }
+    // Momenta that grow from step to step end where states do.
+    let mut simulation = empty();
+    let body = simulation.add(&cube()).unwrap();
+    simulation.set_velocity(body, DVec3::Y * -9.99e96, DVec3::ZERO).unwrap();
+    simulation.set_gravity(DVec3::Y * -1e96).unwrap();
+    let steps = (0..5).take_while(|_| simulation.step().is_ok()).count();
+    assert_eq!(steps, 1);
+    let last = simulation.snapshot();
+    simulation.restore(&last).unwrap();
+}

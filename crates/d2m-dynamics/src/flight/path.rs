@@ -4,6 +4,7 @@
 use crate::StepError;
 use crate::body::rigid_body::RigidBody;
 use crate::body::turning::Pull;
+use crate::numbers::is_small;
 use crate::rest::quiet::Surface;
 use d2m_bvh::Posed;
 use d2m_contact::{Momenta, Velocity};
@@ -151,15 +152,24 @@ impl RigidBody {
         self.has_flown = true;
     }
 
-    /// [`Self::fly`], if all numbers of the flight are finite.
+    /// [`Self::fly`], if all numbers of the flight can be used.
     ///
     /// # Errors
-    /// [`StepError::TooFast`] where the velocity, or the way or the turn to the horizon, is beyond doubles.
-    pub(crate) fn try_fly(&mut self, velocity: Velocity, horizon: f64) -> Result<(), StepError> {
-        let length = horizon - self.time;
+    /// [`StepError::TooFast`] where the way or the turn to the horizon is beyond doubles, and where the velocity, the
+    /// force or the momenta at the horizon exceed [`LARGEST`](crate::Simulation::LARGEST), which no state may.
+    pub(crate) fn try_fly(
+        &mut self,
+        velocity: Velocity,
+        horizon: f64,
+        gravity: DVec3,
+    ) -> Result<(), StepError> {
+        let (length, force) = (horizon - self.time, self.force_with(gravity));
         let is_known =
             (self.position + velocity.linear * length).is_finite() && (velocity.angular * length).is_finite();
-        if !is_known {
+        let (linear, angular) =
+            (self.momentum + force * length, self.angular_momentum + self.torque * length);
+        let are_small = [velocity.linear, velocity.angular, force, linear, angular].into_iter().all(is_small);
+        if !(is_known && are_small) {
             return Err(StepError::TooFast { body: self.name.to_string(), time: self.time });
         }
         self.fly(velocity, horizon);

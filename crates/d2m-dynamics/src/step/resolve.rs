@@ -76,6 +76,7 @@ impl Step<'_> {
                 && body.horizon == horizon
                 && off.surface_speed(body.radius) <= most
         };
+        let (gravity, step) = (self.sim.options.gravity, self.sim.options.step);
         let mut changed: Vec<usize> = Vec::new();
         let mut solved_for = vec![false; self.sim.bodies.len()];
         for part in solved {
@@ -94,14 +95,13 @@ impl Step<'_> {
                 body.lead = Some(push.lead);
                 body.free = false;
                 if !is_same(body, push.body, push.velocity, push.horizon) {
-                    body.try_fly(push.velocity, push.horizon)?;
+                    body.try_fly(push.velocity, push.horizon, gravity)?;
                     changed.push(push.body);
                 }
                 solved_for[push.body] = true;
             }
             self.keep(part, occasion);
         }
-        let (gravity, step) = (self.sim.options.gravity, self.sim.options.step);
         let splits = if self.count > CROWD { Splits::Common } else { Splits::Own };
         for &i in &group.members {
             let body = &mut self.sim.bodies[i];
@@ -112,7 +112,7 @@ impl Step<'_> {
                 body.lead = Some(body.lead.unwrap_or(0.5 * length));
                 body.free = true;
                 if !is_same(body, i, velocity, horizon) {
-                    body.try_fly(velocity, horizon)?;
+                    body.try_fly(velocity, horizon, gravity)?;
                     changed.push(i);
                 }
             } else if body.is_kinematic() && body.flight.reference_time() == time {
