@@ -2,8 +2,8 @@
 
 use d2m_bvh::{MeshTree, Solid, TriMesh};
 use d2m_dynamics::{
-    Body, Joint, JointKind, Kind, Mass, MassError, MassProperties, Simulation, SimulationError,
-    SimulationOptions, StepError,
+    Body, Joint, JointKind, Kind, Mass, MassError, MassProperties, Motor, MotorTarget, Simulation,
+    SimulationError, SimulationOptions, Spring, StepError,
 };
 use d2m_motion::ConstantTwist;
 use glam::{DMat3, DQuat, DVec3};
@@ -208,4 +208,58 @@ fn what_is_faster_than_any_state_ends_the_step() {
     assert_eq!(steps, 1);
     let last = simulation.snapshot();
     simulation.restore(&last).unwrap();
+}
+
+/// Springs and soft motors of hardly any force, or in steps of hardly any length, do nothing: velocities were no numbers after them.
+#[test]
+fn the_weakest_springs_pull_nothing() {
+    let slide = |stiffness: f64, damping: f64, is_motor: bool| {
+        let mut simulation = empty();
+        let load = simulation.add(&cube()).unwrap();
+        let slide = Joint::new(JointKind::Prismatic, load, None, DVec3::ZERO).with_axis(DVec3::Y);
+        let mut motor = Motor::new(MotorTarget::Position(0.1));
+        (motor.stiffness, motor.damping) = (stiffness, damping);
+        let spring = Spring::new(stiffness, damping, 0.1);
+        let slide = if is_motor { slide.with_motor(motor) } else { slide.with_spring(spring) };
+        simulation.add_joint(&slide).unwrap();
+        (simulation, load)
+    };
+    for is_motor in [false, true] {
+        for weak in [5e-324, 1e-310, 1e-305, 1e-304, 1e-300, 1e-30] {
+            for damping in [0.0, weak] {
+                let (mut simulation, load) = slide(weak, damping, is_motor);
+                for _ in 0..3 {
+                    simulation.step().unwrap();
+                }
+                let fallen = simulation.linear_velocity(load).y;
+                assert!((fallen + 9.81 * 0.025).abs() < 1e-12, "{weak:e} {fallen}");
+                let snapshot = simulation.snapshot();
+                simulation.restore(&snapshot).unwrap();
+            }
+        }
+        for short in [1e-300, 1e-160, 1e-155, 1e-150] {
+            let (mut simulation, load) = slide(100.0, 0.0, is_motor);
+            simulation.step_to(short).unwrap();
+            assert!(simulation.linear_velocity(load).length() < 1e-140, "{short:e}");
+            simulation.step().unwrap();
+            assert!(simulation.linear_velocity(load).is_finite());
+        }
+    }
+}
+
+/// Joints at points further away than any number of a state are refused: a simulation had them, and refused its own snapshot.
+#[test]
+fn joints_beyond_all_numbers_are_refused() {
+    let mut simulation = empty();
+    let body = simulation.add(&cube()).unwrap();
+    let before = simulation.snapshot();
+    for far in [1e101, 1e200, 1e308] {
+        let pin = Joint::new(JointKind::Spherical, body, None, DVec3::X * far);
+        let said = simulation.add_joint(&pin).unwrap_err().to_string();
+        assert!(said.contains("point [") && said.ends_with("cannot be used"), "{said}");
+        assert_eq!(simulation.snapshot(), before);
+    }
+    simulation.add_joint(&Joint::new(JointKind::Spherical, body, None, DVec3::X * 1e100)).unwrap();
+    let snapshot = simulation.snapshot();
+    simulation.restore(&snapshot).unwrap();
 }

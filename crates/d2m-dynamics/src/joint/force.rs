@@ -74,14 +74,18 @@ impl Joint {
     }
 
     /// The law of a force that acts for this time, and its rate. Springs and motors are implicit: they have the
-    /// force of the value and the rate at the end, so that no stiffness is too large.
+    /// force of the value and the rate at the end, so that no stiffness is too large. One whose impulse for
+    /// each unit of rate is so small that its inverse is no number has none: below 2⁻¹⁰²⁴ it changes no momentum.
     fn law_of(&self, force: Force, value: f64, time: f64) -> (Law, f64) {
+        let none = (Law::Range { lo: 0.0, hi: 0.0, softness: 0.0 }, 0.0);
         let soft = |stiffness: f64, damping: f64, off: f64, most: f64| {
             let softness = 1.0 / (time * (time * stiffness + damping));
+            if softness == f64::INFINITY {
+                return none;
+            }
             let law = Law::Range { lo: -most * time, hi: most * time, softness };
             (law, off * time * stiffness * softness)
         };
-        let none = (Law::Range { lo: 0.0, hi: 0.0, softness: 0.0 }, 0.0);
         match (force, self.spring, self.motor) {
             _ if time <= 0.0 => none,
             (Force::Spring, Some(spring), _) => {

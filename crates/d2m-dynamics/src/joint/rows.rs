@@ -72,10 +72,14 @@ impl Joined {
         }
         let point = if is_locked { a.position } else { joint.point };
         let own = |body: &RigidBody, v: DVec3| body.orientation.conjugate() * v;
+        let arms = [own(a, point - a.position), own(b, point - b.position)];
+        if !arms.iter().all(|arm| is_small(*arm)) {
+            return bad("point", shown(point.to_array()));
+        }
         Ok(Self {
             joint: joint.clone(),
             bodies: places,
-            arms: [own(a, point - a.position), own(b, point - b.position)],
+            arms,
             axes: [own(a, axis), own(b, axis)],
             turn: a.orientation.conjugate() * b.orientation,
             value: 0.0,
