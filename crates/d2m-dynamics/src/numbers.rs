@@ -1,7 +1,7 @@
 //! Which numbers of bodies can be used, whether they are given or read.
 
-use crate::SimulationError;
 use crate::shown::{shown, shown_turn};
+use crate::{SimulationError, SimulationOptions};
 use glam::{DQuat, DVec3};
 
 /// No momentum, angular momentum or velocity of a body may exceed this: their products are still finite.
@@ -18,14 +18,44 @@ const SHORT: f64 = f64::from_bits((1023 - 400) << 52);
 /// one divided by it is below 2⁴²⁴.
 const SCALE: f64 = f64::from_bits((1023 + 600) << 52);
 
+/// The part of the gap by which a contact may close in the rest of the step before its body is solved with the
+/// others.
+pub(crate) const LEEWAY: f64 = 1.0 / 16.0;
+
 /// Reasons for which numbers are refused.
 pub(crate) const UNUSABLE: &str = "cannot be used";
 pub(crate) const FINITE: &str = "must be finite";
 pub(crate) const NOT_NEGATIVE: &str = "must be finite and not negative";
 
+pub(crate) const UNRESOLVED: &str =
+    "is so fast that its rounding closes contacts: take a wider gap, or shorter steps";
+
 /// The error that refuses a number of a body, without a further reason.
 pub(crate) fn unusable_of(body: &str, name: &'static str, value: String) -> SimulationError {
     SimulationError::BadBody { body: body.to_owned(), name, value, reason: UNUSABLE }
+}
+
+/// Checks the velocity of a running surface. The rate of a contact is a sum of products with it, so it is known to the
+/// rounding of it, 2⁻⁵² of its length or less. Where that closes a contact by more than [`LEEWAY`] of the gap in a
+/// step, rows of contacts cannot be met: friction vanishes, and bodies sink in the gap and are thrown back.
+pub(crate) fn check_surface(
+    body: &str,
+    velocity: DVec3,
+    options: &SimulationOptions,
+) -> Result<(), SimulationError> {
+    let value = || shown(velocity.to_array());
+    let bad = |reason: &'static str| {
+        let (body, name) = (body.to_owned(), "surface velocity");
+        Err(SimulationError::BadBody { body, name, value: value(), reason })
+    };
+    let rounding = velocity.length() * f64::EPSILON;
+    if !velocity.is_finite() {
+        bad(FINITE)
+    } else if rounding > LEEWAY * (options.gap / options.step) || !is_small(velocity) {
+        bad(UNRESOLVED)
+    } else {
+        Ok(())
+    }
 }
 
 /// Numbers of a body.

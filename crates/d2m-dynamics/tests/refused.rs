@@ -263,3 +263,33 @@ fn joints_beyond_all_numbers_are_refused() {
     let snapshot = simulation.snapshot();
     simulation.restore(&snapshot).unwrap();
 }
+
+/// A floor runs under a cube, which friction speeds up by g/2 at any speed that is accepted; faster ones are refused by name, on a body that is
+/// added, in a running simulation and in a snapshot.
+#[test]
+fn surfaces_are_no_faster_than_contacts_resolve() {
+    for speed in [1.0, 1e6, 1e13, 2.8e13] {
+        let mut simulation = empty();
+        let floor = cube().with_kind(Kind::Static).with_friction(0.5).with_position(DVec3::Y * -0.5);
+        let floor = simulation.add(&floor).unwrap();
+        let body = simulation.add(&cube().with_friction(0.5).with_position(DVec3::Y * 0.501)).unwrap();
+        simulation.set_surface_velocity(floor, DVec3::X * speed).unwrap();
+        for _ in 0..10 {
+            simulation.step().unwrap();
+        }
+        let gained = 0.5 * 9.81 * 0.095;
+        assert!((simulation.linear_velocity(body).x - gained).abs() < 0.01 * gained, "{speed:e}");
+        let before = simulation.snapshot();
+        for fast in [3e13, 1e16, 1e101, 1e200, f64::INFINITY] {
+            let refused = simulation.set_surface_velocity(floor, DVec3::X * fast).unwrap_err().to_string();
+            assert!(refused.contains("surface velocity ["), "{refused}");
+            assert!(simulation.add(&cube().with_surface_velocity(DVec3::Y * fast)).is_err());
+            assert_eq!(simulation.snapshot(), before);
+        }
+        simulation.restore(&before).unwrap();
+        let written = serde_json::to_string(&before).unwrap();
+        let forged = written.replace(&format!("[{speed:?},0.0,0.0]"), "[1e16,0.0,0.0]");
+        assert!(forged != written);
+        assert!(simulation.restore(&serde_json::from_str(&forged).unwrap()).is_err());
+    }
+}

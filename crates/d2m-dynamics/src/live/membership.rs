@@ -1,6 +1,7 @@
 //! Adding, replacing and removing bodies, and the one function that forgets what was proven of them.
 
 use crate::body::rigid_body::{RigidBody, Role};
+use crate::numbers::check_surface;
 use crate::pairs::known::Pair;
 use crate::rest::quiet::Quiet;
 use crate::{Body, BodyId, Simulation, SimulationError};
@@ -24,7 +25,9 @@ impl Simulation {
         let same = self.bodies.iter().find(|other| Arc::ptr_eq(&other.tree, &body.tree));
         let faces =
             same.map_or_else(|| Arc::new(Faces::new(body.tree.mesh())), |other| Arc::clone(&other.faces));
-        RigidBody::try_new(body, faces, self.time)
+        let made = RigidBody::try_new(body, faces, self.time)?;
+        check_surface(&body.name, body.surface_velocity, &self.options)?;
+        Ok(made)
     }
 
     /// As [`Self::add`], but a body that intersects another one that it meets is refused at once.

@@ -41,7 +41,7 @@ pub(crate) struct BodyState {
     friction: f64,
     damping: Damping,
     groups: Groups,
-    surface_velocity: DVec3,
+    pub(crate) surface_velocity: DVec3,
     target: Option<Target>,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) held: Held<HeldBody>,

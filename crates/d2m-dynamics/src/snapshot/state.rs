@@ -2,7 +2,7 @@
 
 use crate::body::rigid_body::{RigidBody, Role};
 use crate::joint::rows::Joined;
-use crate::numbers::{Fault, material_fault};
+use crate::numbers::{Fault, check_surface, material_fault};
 use crate::shown::shown;
 use crate::snapshot::body::BodyState;
 use crate::snapshot::contents::Source;
@@ -193,6 +193,7 @@ impl Simulation {
             let place = state.id.index();
             let missing = SimulationError::Snapshot { place };
             let own = next.bodies.get_mut(place).filter(|own| snapshot.has(own, place)).ok_or(missing)?;
+            check_surface(&own.name, state.surface_velocity, &snapshot.options)?;
             *own = state.restored(own, snapshot.time)?;
             own.id = state.id;
             if snapshot.world == Some(place) || state.is_of(own) {

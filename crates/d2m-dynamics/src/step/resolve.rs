@@ -8,6 +8,7 @@ use crate::flight::group::{CROWD, Push, Solved, islands, solve};
 use crate::flight::length::Clock;
 use crate::flight::path::Splits;
 use crate::flight::solved_body::moves;
+use crate::numbers::LEEWAY;
 use d2m_contact::{Company, ContactPoint, Velocity};
 use d2m_mesh::parallel::map_owned;
 use std::collections::BTreeMap;
@@ -23,9 +24,6 @@ const SAME: f64 = 1.0 / 1024.0;
 /// Expected contacts of up to so many bodies of a crowd are solved with the bodies on which these press, and
 /// not with all that are connected.
 const FEW: usize = 8;
-/// The part of the gap by which a contact may close in the rest of the step before its body is solved with
-/// the others.
-pub(super) const LEEWAY: f64 = 1.0 / 16.0;
 
 /// The bodies that are solved at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
