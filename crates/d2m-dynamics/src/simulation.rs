@@ -281,6 +281,15 @@ impl Simulation {
         self.world = Some(id.index());
     }
 
+    /// Makes the world if there is none, at this place if it is free.
+    pub(crate) fn have_world(&mut self, place: Option<usize>) -> Result<(), SimulationError> {
+        if self.world.is_none() {
+            let world = self.new_world()?;
+            self.settle_world(world, place);
+        }
+        Ok(())
+    }
+
     /// The contacts that a pair had when it was measured last.
     pub(crate) fn contacts(&self, pair: (usize, usize)) -> &[ContactPoint] {
         self.pairs.get(&pair).map_or(&[], |pair| &pair.contacts)

@@ -4,7 +4,8 @@
 //! kinematic body begins its next flight, or at an event. Up to where its flight was planned to end a force has
 //! acted by the impulse that it was solved with; the next flight has its impulse from there on.
 
-use crate::joint::description::{Joint, MotorTarget};
+use crate::joint::description::{Joint, Motor, MotorTarget};
+use crate::joint::rows::TAKEN_BACK;
 use d2m_contact::Law;
 
 /// A force along the value of a joint.
@@ -100,6 +101,17 @@ impl Joint {
                 (Law::Range { lo: -most, hi: most, softness: 0.0 }, 0.0)
             }
             (Force::Spring | Force::Motor, ..) => none,
+        }
+    }
+}
+
+impl Motor {
+    /// The rate that it brings about at once, unless it is soft.
+    pub(crate) fn hard_rate(&self, value: f64, step: f64) -> Option<f64> {
+        match self.target {
+            MotorTarget::Velocity(rate) => Some(rate),
+            MotorTarget::Position(_) if self.stiffness > 0.0 => None,
+            MotorTarget::Position(place) => Some(TAKEN_BACK * (place - value) / step),
         }
     }
 }

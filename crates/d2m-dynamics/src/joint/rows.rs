@@ -12,7 +12,7 @@ use d2m_motion::rotation_vector;
 use glam::{BVec3, DQuat, DVec3};
 
 /// The part of a joint's position error that a step corrects.
-const TAKEN_BACK: f64 = 0.2;
+pub(crate) const TAKEN_BACK: f64 = 0.2;
 
 /// A joint between two bodies of the list, the second one perhaps the world.
 #[derive(Clone, Debug, PartialEq)]
@@ -371,17 +371,6 @@ impl Joined {
         for (number, (law, rate)) in self.joint.laws_of_forces(value, h).into_iter().enumerate() {
             let part = JointPart::Force { joint: made.number, number };
             made.add(axis, JointRow { part, ..row(law, rate, rate) });
-        }
-    }
-}
-
-impl Motor {
-    /// The rate that it brings about at once, unless it is soft.
-    fn hard_rate(&self, value: f64, step: f64) -> Option<f64> {
-        match self.target {
-            MotorTarget::Velocity(rate) => Some(rate),
-            MotorTarget::Position(_) if self.stiffness > 0.0 => None,
-            MotorTarget::Position(place) => Some(TAKEN_BACK * (place - value) / step),
         }
     }
 }

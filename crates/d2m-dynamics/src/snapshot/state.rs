@@ -184,9 +184,8 @@ impl Simulation {
         snapshot.check()?;
         let mut next = self.clone();
         next.make_way(snapshot);
-        if snapshot.world.is_some() && next.world.is_none() {
-            let world = next.new_world()?;
-            next.settle_world(world, snapshot.world);
+        if snapshot.world.is_some() {
+            next.have_world(snapshot.world)?;
         }
         let mut own_places = BTreeSet::new();
         for state in &snapshot.bodies {
