@@ -282,10 +282,10 @@ impl Simulation {
     }
 
     /// Makes the world if there is none, at this place if it is free.
-    pub(crate) fn have_world(&mut self, place: Option<usize>) -> Result<(), SimulationError> {
+    pub(crate) fn have_world(&mut self, place: usize) -> Result<(), SimulationError> {
         if self.world.is_none() {
             let world = self.new_world()?;
-            self.settle_world(world, place);
+            self.settle_world(world, Some(place));
         }
         Ok(())
     }

@@ -184,9 +184,7 @@ impl Simulation {
         snapshot.check()?;
         let mut next = self.clone();
         next.make_way(snapshot);
-        if snapshot.world.is_some() {
-            next.have_world(snapshot.world)?;
-        }
+        snapshot.world.map_or(Ok(()), |place| next.have_world(place))?;
         let mut own_places = BTreeSet::new();
         for state in &snapshot.bodies {
             let place = state.id.index();
