@@ -23,7 +23,9 @@ impl Simulation {
     /// ```
     ///
     /// # Errors
-    /// [`StepError`]; the segments until then are those of [`Self::finish`].
+    /// [`StepError`]; the segments until then are those of [`Self::finish`]. Where nothing has moved, nothing has
+    /// changed, however often it is tried. Else velocities have faded and motors have pushed as in the whole step, and
+    /// the next step does without that part.
     pub fn step(&mut self) -> Result<StepReport, StepError> {
         self.step_with(&mut Nobody)
     }
@@ -102,8 +104,20 @@ impl Simulation {
             let wanted = "after the present time";
             return Err(SimulationError::BadOption { name: "end of the step", value: end, wanted }.into());
         }
-        self.check_start()?;
-        Step::new(self, end, listener).run()
+        let before = self.as_it_is();
+        if let Err(error) = self.check_start() {
+            *self = before;
+            return Err(error);
+        }
+        Step::new(self, end, listener).run(before)
+    }
+
+    /// A copy that goes on with the same bits. Neighbors are not copied: they follow from the flights.
+    fn as_it_is(&mut self) -> Self {
+        let neighbors = core::mem::take(&mut self.neighbors);
+        let copy = self.clone();
+        self.neighbors = neighbors;
+        copy
     }
 
     /// The segments that are not reported yet, at the end of a run.

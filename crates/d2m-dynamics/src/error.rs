@@ -212,7 +212,8 @@ pub enum StepError {
     /// A kinematic body turns or accelerates so fast that flights of constant twists, 4096 in a step, do not
     /// stay closer to its motion than a hundredth of the gap; or the enclosures of its motion are too wide to
     /// show it. Or a dynamic body turns so fast in its joints that flights, 4096 in a step, tear them by more
-    /// than the gap, as with a motor of absurd speed. Or the numbers of a body's flight are beyond doubles.
+    /// than the gap, as with a motor of absurd speed. Or the numbers of a body's flight are beyond doubles, or its velocity,
+    /// force or momenta above [`LARGEST`](crate::Simulation::LARGEST).
     #[error(
         "at time {time:?}: body {body} moves too fast, or too unevenly, for the step: take a shorter step or a wider gap"
     )]

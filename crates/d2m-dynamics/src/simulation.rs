@@ -266,23 +266,28 @@ impl Simulation {
         self.bodies[a].groups.admit(self.bodies[b].groups) && !self.ignored.contains(&(a.min(b), a.max(b)))
     }
 
-    /// The place of the body that stands for the world.
-    pub(crate) fn world(&mut self) -> Result<usize, SimulationError> {
-        self.world_at(None)
-    }
-
-    /// As [`Self::world`], at this place if there is none yet, and the place is free.
-    pub(crate) fn world_at(&mut self, place: Option<usize>) -> Result<usize, SimulationError> {
-        if let Some(world) = self.world {
-            return Ok(world);
-        }
+    /// Makes the body that stands for the world, without a place.
+    pub(crate) fn new_world(&self) -> Result<RigidBody, SimulationError> {
         let wanted = "a length that is not lost";
         let bad = |_| SimulationError::BadOption { name: "gap", value: self.options.gap, wanted };
         let tree = Arc::new(MeshTree::new(TriMesh::point(DVec3::ZERO).map_err(bad)?));
-        let id = self.add_at(&Body::new("the world", tree).with_kind(Kind::Static), place)?;
+        self.made(&Body::new("the world", tree).with_kind(Kind::Static))
+    }
+
+    /// Gives the world this place if it is free, or the first free one.
+    pub(crate) fn settle_world(&mut self, world: RigidBody, place: Option<usize>) {
+        let id = self.settle_in(world, place);
         self.bodies[id.index()].role = Role::World;
         self.world = Some(id.index());
-        Ok(id.index())
+    }
+
+    /// Makes the world if there is none, at this place if it is free.
+    pub(crate) fn have_world(&mut self, place: usize) -> Result<(), SimulationError> {
+        if self.world.is_none() {
+            let world = self.new_world()?;
+            self.settle_world(world, Some(place));
+        }
+        Ok(())
     }
 
     /// The contacts that a pair had when it was measured last.

@@ -2,8 +2,8 @@
 
 use d2m_bvh::{MeshTree, Solid, TriMesh};
 use d2m_dynamics::{
-    Body, Joint, JointKind, Kind, Mass, MassError, MassProperties, Simulation, SimulationError,
-    SimulationOptions,
+    Body, Joint, JointKind, Kind, Mass, MassError, MassProperties, Motor, MotorTarget, Simulation,
+    SimulationError, SimulationOptions, Spring, StepError,
 };
 use d2m_motion::ConstantTwist;
 use glam::{DMat3, DQuat, DVec3};
@@ -161,5 +161,135 @@ fn velocities_that_would_be_ignored_are_refused() {
                 "{error}"
             );
         }
+    }
+}
+
+/// A snapshot that was written and read puts a kinematic body far from the motion that it has by now: no step leads there. It was a panic.
+#[test]
+fn no_flight_leads_to_a_motion_beyond_all_numbers() {
+    for far in [1e101, 1.5e307, 1e308] {
+        let mut simulation = empty();
+        let rest = Kind::Kinematic(Arc::new(ConstantTwist::REST));
+        let body = simulation.add(&cube().with_kind(rest)).unwrap();
+        simulation.step().unwrap();
+        let written = serde_json::to_string(&simulation.snapshot()).unwrap();
+        simulation.set_motion(body, Arc::new(ConstantTwist::REST.with_position(DVec3::X * far))).unwrap();
+        simulation.restore(&serde_json::from_str(&written).unwrap()).unwrap();
+        let before = simulation.snapshot();
+        for _ in 0..2 {
+            let time = simulation.time();
+            assert_eq!(simulation.step(), Err(StepError::TooFast { body: "cube".to_owned(), time }));
+            assert_eq!(simulation.snapshot(), before);
+        }
+    }
+}
+
+/// What falls so fast that no state could say it ends the step by name, and leaves a state that can be gone back to.
+#[test]
+fn what_is_faster_than_any_state_ends_the_step() {
+    for gravity in [1e99, 1e110, 1e160, 1e308] {
+        let mut simulation = empty();
+        simulation.add(&cube()).unwrap();
+        simulation.step().unwrap();
+        simulation.set_gravity(DVec3::Y * -gravity).unwrap();
+        let before = simulation.snapshot();
+        assert_eq!(simulation.step(), Err(StepError::TooFast { body: "cube".to_owned(), time: 0.01 }));
+        assert_eq!(simulation.snapshot(), before);
+        simulation.restore(&before).unwrap();
+        simulation.set_gravity(DVec3::ZERO).unwrap();
+        simulation.step().unwrap();
+    }
+    // Momenta that grow from step to step end where states do.
+    let mut simulation = empty();
+    let body = simulation.add(&cube()).unwrap();
+    simulation.set_velocity(body, DVec3::Y * -9.99e96, DVec3::ZERO).unwrap();
+    simulation.set_gravity(DVec3::Y * -1e96).unwrap();
+    let steps = (0..5).take_while(|_| simulation.step().is_ok()).count();
+    assert_eq!(steps, 1);
+    let last = simulation.snapshot();
+    simulation.restore(&last).unwrap();
+}
+
+/// Springs and soft motors of hardly any force, or in steps of hardly any length, do nothing: velocities were no numbers after them.
+#[test]
+fn the_weakest_springs_pull_nothing() {
+    let slide = |stiffness: f64, damping: f64, is_motor: bool| {
+        let mut simulation = empty();
+        let load = simulation.add(&cube()).unwrap();
+        let slide = Joint::new(JointKind::Prismatic, load, None, DVec3::ZERO).with_axis(DVec3::Y);
+        let mut motor = Motor::new(MotorTarget::Position(0.1));
+        (motor.stiffness, motor.damping) = (stiffness, damping);
+        let spring = Spring::new(stiffness, damping, 0.1);
+        let slide = if is_motor { slide.with_motor(motor) } else { slide.with_spring(spring) };
+        simulation.add_joint(&slide).unwrap();
+        (simulation, load)
+    };
+    for is_motor in [false, true] {
+        for weak in [5e-324, 1e-310, 1e-305, 1e-304, 1e-300, 1e-30] {
+            for damping in [0.0, weak] {
+                let (mut simulation, load) = slide(weak, damping, is_motor);
+                for _ in 0..3 {
+                    simulation.step().unwrap();
+                }
+                let fallen = simulation.linear_velocity(load).y;
+                assert!((fallen + 9.81 * 0.025).abs() < 1e-12, "{weak:e} {fallen}");
+                let snapshot = simulation.snapshot();
+                simulation.restore(&snapshot).unwrap();
+            }
+        }
+        for short in [1e-300, 1e-160, 1e-155, 1e-150] {
+            let (mut simulation, load) = slide(100.0, 0.0, is_motor);
+            simulation.step_to(short).unwrap();
+            assert!(simulation.linear_velocity(load).length() < 1e-140, "{short:e}");
+            simulation.step().unwrap();
+            assert!(simulation.linear_velocity(load).is_finite());
+        }
+    }
+}
+
+/// Joints at points further away than any number of a state are refused: a simulation had them, and refused its own snapshot.
+#[test]
+fn joints_beyond_all_numbers_are_refused() {
+    let mut simulation = empty();
+    let body = simulation.add(&cube()).unwrap();
+    let before = simulation.snapshot();
+    for far in [1e101, 1e200, 1e308] {
+        let pin = Joint::new(JointKind::Spherical, body, None, DVec3::X * far);
+        let said = simulation.add_joint(&pin).unwrap_err().to_string();
+        assert!(said.contains("point [") && said.ends_with("cannot be used"), "{said}");
+        assert_eq!(simulation.snapshot(), before);
+    }
+    simulation.add_joint(&Joint::new(JointKind::Spherical, body, None, DVec3::X * 1e100)).unwrap();
+    let snapshot = simulation.snapshot();
+    simulation.restore(&snapshot).unwrap();
+}
+
+/// A floor runs under a cube, which friction speeds up by g/2 at any speed that is accepted; faster ones are refused by name, on a body that is
+/// added, in a running simulation and in a snapshot.
+#[test]
+fn surfaces_are_no_faster_than_contacts_resolve() {
+    for speed in [1.0, 1e6, 1e13, 2.8e13] {
+        let mut simulation = empty();
+        let floor = cube().with_kind(Kind::Static).with_friction(0.5).with_position(DVec3::Y * -0.5);
+        let floor = simulation.add(&floor).unwrap();
+        let body = simulation.add(&cube().with_friction(0.5).with_position(DVec3::Y * 0.501)).unwrap();
+        simulation.set_surface_velocity(floor, DVec3::X * speed).unwrap();
+        for _ in 0..10 {
+            simulation.step().unwrap();
+        }
+        let gained = 0.5 * 9.81 * 0.095;
+        assert!((simulation.linear_velocity(body).x - gained).abs() < 0.01 * gained, "{speed:e}");
+        let before = simulation.snapshot();
+        for fast in [3e13, 1e16, 1e101, 1e200, f64::INFINITY] {
+            let refused = simulation.set_surface_velocity(floor, DVec3::X * fast).unwrap_err().to_string();
+            assert!(refused.contains("surface velocity ["), "{refused}");
+            assert!(simulation.add(&cube().with_surface_velocity(DVec3::Y * fast)).is_err());
+            assert_eq!(simulation.snapshot(), before);
+        }
+        simulation.restore(&before).unwrap();
+        let written = serde_json::to_string(&before).unwrap();
+        let forged = written.replace(&format!("[{speed:?},0.0,0.0]"), "[1e16,0.0,0.0]");
+        assert!(forged != written);
+        assert!(simulation.restore(&serde_json::from_str(&forged).unwrap()).is_err());
     }
 }

@@ -250,7 +250,7 @@ impl Default for Groups {
 }
 
 /// How fast the velocities of a dynamic body fade, apart from contacts: each by the factor exp(−rate · step)
-/// at the start of a step.
+/// at the start of a step. Where an error ends that early, the next one does without the part that they have faded by.
 ///
 /// ```
 /// # use std::sync::Arc;

@@ -8,7 +8,6 @@ use crate::shown::shown;
 use crate::{MassProperties, SimulationError};
 use d2m_bvh::{MeshTree, Moving, QueryError, Solid};
 use d2m_contact::{Momenta, Velocity, extreme_eigenvalues};
-use d2m_interval::Interval;
 use d2m_mesh::Faces;
 use d2m_motion::{ConstantTwist, CoveredMotion};
 use glam::{DMat3, DQuat, DVec3};
@@ -87,6 +86,8 @@ pub(crate) struct RigidBody {
     pub(crate) orientation: DQuat,
     pub(crate) momentum: DVec3,
     pub(crate) angular_momentum: DVec3,
+    /// Until when its velocities have faded: to the end of the last step, also where an error ended that early.
+    pub(crate) faded: f64,
     /// Force and torque of the user over the next step.
     pub(crate) force: DVec3,
     pub(crate) torque: DVec3,
@@ -214,6 +215,7 @@ impl RigidBody {
             orientation,
             momentum: body.linear_velocity * mass,
             angular_momentum: rotation * (inertia * (rotation.transpose() * body.angular_velocity)),
+            faded: f64::NEG_INFINITY,
             force: DVec3::ZERO,
             torque: DVec3::ZERO,
             flight: rest,
@@ -301,18 +303,6 @@ impl RigidBody {
     /// The body on a motion, as a solid or a surface, as it is.
     pub(crate) fn moving_on<'a>(&'a self, motion: &'a ConstantTwist) -> Moving<'a> {
         Moving::new(&*self.tree, motion).with_solid(self.solid).with_radius(self.rounding)
-    }
-
-    /// Lets the velocities fade for a time.
-    pub(crate) fn damp(&mut self, time: f64) {
-        // The nearest number to the exponential, with the same bits everywhere.
-        let factor = |rate: f64| Interval::point(-rate * time).exp().mid();
-        if self.damping.linear > 0.0 {
-            self.momentum *= factor(self.damping.linear);
-        }
-        if self.damping.angular > 0.0 {
-            self.angular_momentum *= factor(self.damping.angular);
-        }
     }
 
     /// The force of gravity and of the user.

@@ -4,9 +4,11 @@
 use crate::StepError;
 use crate::body::rigid_body::RigidBody;
 use crate::body::turning::Pull;
+use crate::numbers::is_small;
 use crate::rest::quiet::Surface;
 use d2m_bvh::Posed;
 use d2m_contact::{Momenta, Velocity};
+use d2m_interval::Interval;
 use d2m_motion::{ConstantTwist, Pose, RigidMotion};
 use glam::{DMat3, DQuat, DVec3};
 use std::borrow::Cow;
@@ -150,15 +152,24 @@ impl RigidBody {
         self.has_flown = true;
     }
 
-    /// [`Self::fly`], if all numbers of the flight are finite.
+    /// [`Self::fly`], if all numbers of the flight can be used.
     ///
     /// # Errors
-    /// [`StepError::TooFast`] where the velocity, or the way or the turn to the horizon, is beyond doubles.
-    pub(crate) fn try_fly(&mut self, velocity: Velocity, horizon: f64) -> Result<(), StepError> {
-        let length = horizon - self.time;
+    /// [`StepError::TooFast`] where the way or the turn to the horizon is beyond doubles, and where the velocity, the
+    /// force or the momenta at the horizon exceed [`LARGEST`](crate::Simulation::LARGEST), which no state may.
+    pub(crate) fn try_fly(
+        &mut self,
+        velocity: Velocity,
+        horizon: f64,
+        gravity: DVec3,
+    ) -> Result<(), StepError> {
+        let (length, force) = (horizon - self.time, self.force_with(gravity));
         let is_known =
             (self.position + velocity.linear * length).is_finite() && (velocity.angular * length).is_finite();
-        if !is_known {
+        let (linear, angular) =
+            (self.momentum + force * length, self.angular_momentum + self.torque * length);
+        let are_small = [velocity.linear, velocity.angular, force, linear, angular].into_iter().all(is_small);
+        if !(is_known && are_small) {
             return Err(StepError::TooFast { body: self.name.to_string(), time: self.time });
         }
         self.fly(velocity, horizon);
@@ -236,6 +247,24 @@ impl RigidBody {
             }
             self.time = time;
             self.lead = self.lead.map(|lead| lead - elapsed);
+        }
+    }
+
+    /// Lets the velocities fade from its time until the end of a step. Where an error ended the last one early
+    /// they have faded for a part of that already.
+    pub(crate) fn damp(&mut self, end: f64) {
+        let time = end - self.time.max(self.faded);
+        if !self.is_dynamic() || time <= 0.0 {
+            return;
+        }
+        self.faded = end;
+        // The nearest number to the exponential, with the same bits everywhere.
+        let factor = |rate: f64| Interval::point(-rate * time).exp().mid();
+        if self.damping.linear > 0.0 {
+            self.momentum *= factor(self.damping.linear);
+        }
+        if self.damping.angular > 0.0 {
+            self.angular_momentum *= factor(self.damping.angular);
         }
     }
 

@@ -4,7 +4,8 @@
 //! kinematic body begins its next flight, or at an event. Up to where its flight was planned to end a force has
 //! acted by the impulse that it was solved with; the next flight has its impulse from there on.
 
-use crate::joint::description::{Joint, MotorTarget};
+use crate::joint::description::{Joint, Motor, MotorTarget};
+use crate::joint::rows::TAKEN_BACK;
 use d2m_contact::Law;
 
 /// A force along the value of a joint.
@@ -17,11 +18,15 @@ enum Force {
 
 /// Until when the forces of a joint have acted.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Acted {
     /// By the impulses of the last solution, and of the one before, which may take its place.
+    #[cfg_attr(feature = "serde", serde(with = "never"))]
     until: f64,
+    #[cfg_attr(feature = "serde", serde(with = "never"))]
     before: f64,
     /// From when on they act in the next flight.
+    #[cfg_attr(feature = "serde", serde(with = "never"))]
     pub(crate) from: f64,
 }
 
@@ -34,6 +39,11 @@ impl Default for Acted {
 }
 
 impl Acted {
+    /// Are these times, or never? A snapshot may have others.
+    pub(crate) fn is_known(&self) -> bool {
+        [self.until, self.before, self.from].into_iter().all(|time| time < f64::INFINITY)
+    }
+
     /// A flight begins at this time, with other impulses than the last solution has found or after these.
     pub(crate) fn begin(&mut self, time: f64, is_solved_again: bool) {
         if !is_solved_again {
@@ -65,14 +75,18 @@ impl Joint {
     }
 
     /// The law of a force that acts for this time, and its rate. Springs and motors are implicit: they have the
-    /// force of the value and the rate at the end, so that no stiffness is too large.
+    /// force of the value and the rate at the end, so that no stiffness is too large. One whose impulse for
+    /// each unit of rate is so small that its inverse is no number has none: below 2⁻¹⁰²⁴ it changes no momentum.
     fn law_of(&self, force: Force, value: f64, time: f64) -> (Law, f64) {
+        let none = (Law::Range { lo: 0.0, hi: 0.0, softness: 0.0 }, 0.0);
         let soft = |stiffness: f64, damping: f64, off: f64, most: f64| {
             let softness = 1.0 / (time * (time * stiffness + damping));
+            if softness == f64::INFINITY {
+                return none;
+            }
             let law = Law::Range { lo: -most * time, hi: most * time, softness };
             (law, off * time * stiffness * softness)
         };
-        let none = (Law::Range { lo: 0.0, hi: 0.0, softness: 0.0 }, 0.0);
         match (force, self.spring, self.motor) {
             _ if time <= 0.0 => none,
             (Force::Spring, Some(spring), _) => {
@@ -88,5 +102,31 @@ impl Joint {
             }
             (Force::Spring | Force::Motor, ..) => none,
         }
+    }
+}
+
+impl Motor {
+    /// The rate that it brings about at once, unless it is soft.
+    pub(crate) fn hard_rate(&self, value: f64, step: f64) -> Option<f64> {
+        match self.target {
+            MotorTarget::Velocity(rate) => Some(rate),
+            MotorTarget::Position(_) if self.stiffness > 0.0 => None,
+            MotorTarget::Position(place) => Some(TAKEN_BACK * (place - value) / step),
+        }
+    }
+}
+
+/// Times that may be never, for formats without infinity.
+#[cfg(feature = "serde")]
+mod never {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes fields by reference")]
+    pub(super) fn serialize<S: Serializer>(time: &f64, to: S) -> Result<S::Ok, S::Error> {
+        (*time > f64::NEG_INFINITY).then_some(*time).serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+        Option::<f64>::deserialize(from).map(|time| time.unwrap_or(f64::NEG_INFINITY))
     }
 }

@@ -4,7 +4,7 @@ use crate::SimulationError;
 use crate::body::rigid_body::RigidBody;
 use crate::joint::description::{Joint, JointKind, Motor, MotorTarget};
 use crate::joint::force::Acted;
-use crate::numbers::{FINITE, NOT_NEGATIVE, UNUSABLE, is_small};
+use crate::numbers::{FINITE, NOT_NEGATIVE, UNUSABLE, direction, is_small};
 use crate::shown::{shown, shown_turn};
 use d2m_contact::{ContactPoint, JointPart, JointRow, Law, Material, tangents};
 use d2m_feature::FeaturePair;
@@ -12,7 +12,7 @@ use d2m_motion::rotation_vector;
 use glam::{BVec3, DQuat, DVec3};
 
 /// The part of a joint's position error that a step corrects.
-const TAKEN_BACK: f64 = 0.2;
+pub(crate) const TAKEN_BACK: f64 = 0.2;
 
 /// A joint between two bodies of the list, the second one perhaps the world.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,8 +28,12 @@ pub(crate) struct Joined {
     /// The last value, and when that was computed: angles go on beyond half a turn.
     value: f64,
     looked: f64,
-    #[cfg_attr(feature = "serde", serde(skip))]
+    #[cfg_attr(feature = "serde", serde(default))]
     pub(crate) acted: Acted,
+    /// The impulse of its motor, in a step that an error ended early, beyond that of its largest force in the time
+    /// that was flown.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) owed: f64,
     /// Was the joint removed, or one of its bodies?
     is_gone: bool,
 }
@@ -54,12 +58,11 @@ impl Joined {
     pub(crate) fn try_new(
         joint: &Joint,
         places: [usize; 2],
-        bodies: &[RigidBody],
+        [a, b]: [&RigidBody; 2],
     ) -> Result<Self, SimulationError> {
-        let [a, b] = places.map(|i| &bodies[i]);
         let bad = |name: &'static str, value: String| Err(unusable([a, b], name, value));
         Self::check_numbers(joint, [a, b])?;
-        let axis = joint.axis.normalize_or_zero();
+        let axis = direction(joint.axis).unwrap_or_default();
         if places[0] == places[1] || !(a.is_dynamic() || b.is_dynamic()) {
             return bad("pair", "without a dynamic body, or of a body with itself,".to_owned());
         }
@@ -69,21 +72,26 @@ impl Joined {
         }
         let point = if is_locked { a.position } else { joint.point };
         let own = |body: &RigidBody, v: DVec3| body.orientation.conjugate() * v;
+        let arms = [own(a, point - a.position), own(b, point - b.position)];
+        if !arms.iter().all(|arm| is_small(*arm)) {
+            return bad("point", shown(point.to_array()));
+        }
         Ok(Self {
             joint: joint.clone(),
             bodies: places,
-            arms: [own(a, point - a.position), own(b, point - b.position)],
+            arms,
             axes: [own(a, axis), own(b, axis)],
             turn: a.orientation.conjugate() * b.orientation,
             value: 0.0,
             looked: a.time.max(b.time),
             acted: Acted::default(),
+            owed: 0.0,
             is_gone: false,
         })
     }
 
     /// Checks the numbers of a joint of these bodies, given or read.
-    fn check_numbers(joint: &Joint, [a, b]: [&RigidBody; 2]) -> Result<(), SimulationError> {
+    pub(crate) fn check_numbers(joint: &Joint, [a, b]: [&RigidBody; 2]) -> Result<(), SimulationError> {
         let bad = |name: &'static str, value: String, reason: &'static str| {
             let [a, b] = [a, b].map(|body| body.name.to_string());
             Err(SimulationError::BadJoint { a, b, name, value, reason })
@@ -91,7 +99,7 @@ impl Joined {
         if !joint.point.is_finite() {
             return bad("point", shown(joint.point.to_array()), FINITE);
         }
-        if !joint.axis.is_finite() || joint.axis.normalize_or_zero() == DVec3::ZERO {
+        if direction(joint.axis).is_none() {
             return bad("axis", shown(joint.axis.to_array()), "has no direction");
         }
         if let Some(limits) = joint.limits.filter(|[lo, hi]| !(lo.is_finite() && hi.is_finite() && lo <= hi))
@@ -136,6 +144,10 @@ impl Joined {
             Some(("arms", format!("{:?}", self.arms)))
         } else if !(self.axes.iter().all(|axis| axis.is_normalized()) && self.turn.is_normalized()) {
             Some(("axes", format!("{:?}, {}", self.axes, shown_turn(self.turn))))
+        } else if !self.acted.is_known() {
+            Some(("times of the forces", format!("{:?}", self.acted)))
+        } else if !is_small(DVec3::X * self.owed) {
+            Some(("motor's impulse", shown([self.owed])))
         } else {
             (!is_small(DVec3::new(self.value, self.looked, 0.0)))
                 .then(|| ("value and its time", shown([self.value, self.looked])))
@@ -236,9 +248,6 @@ impl Joined {
     /// Keeps the value where flights end: poses give it up to full turns, and flights give the number of
     /// these.
     pub(crate) fn look(&mut self, pair: [&RigidBody; 2]) {
-        if self.is_gone {
-            return;
-        }
         self.value = self.value(pair);
         self.looked = pair[0].time.max(pair[1].time);
     }
@@ -362,17 +371,6 @@ impl Joined {
         for (number, (law, rate)) in self.joint.laws_of_forces(value, h).into_iter().enumerate() {
             let part = JointPart::Force { joint: made.number, number };
             made.add(axis, JointRow { part, ..row(law, rate, rate) });
-        }
-    }
-}
-
-impl Motor {
-    /// The rate that it brings about at once, unless it is soft.
-    fn hard_rate(&self, value: f64, step: f64) -> Option<f64> {
-        match self.target {
-            MotorTarget::Velocity(rate) => Some(rate),
-            MotorTarget::Position(_) if self.stiffness > 0.0 => None,
-            MotorTarget::Position(place) => Some(TAKEN_BACK * (place - value) / step),
         }
     }
 }

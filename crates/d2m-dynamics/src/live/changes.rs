@@ -2,7 +2,7 @@
 
 use crate::body::description::{Damping, Groups, Kind};
 use crate::body::rigid_body::{RigidBody, Target};
-use crate::numbers::{FINITE, Fault, material_fault, unusable_of};
+use crate::numbers::{Fault, check_surface, material_fault, unusable_of};
 use crate::shown::{shown, shown_turn};
 use crate::{BodyId, Motion, Simulation, SimulationError};
 use d2m_contact::{Material, Velocity};
@@ -98,6 +98,7 @@ impl Simulation {
         }
         let mut changed = own.clone();
         changed.set_velocity(Velocity { linear, angular });
+        changed.faded = f64::NEG_INFINITY;
         changed.check_momenta(given, [DVec3::ZERO; 2])?;
         self.bodies[place] = changed;
         self.drop_known(place);
@@ -185,7 +186,8 @@ impl Simulation {
     /// ([`Body::surface_velocity`](crate::Body::surface_velocity)).
     ///
     /// # Errors
-    /// A velocity that is not finite. Nothing changes then.
+    /// A velocity that is not finite, or of which the rounding alone, 2⁻⁵² of it, closes contacts by more than a
+    /// sixteenth of the gap in a step. Nothing changes then.
     ///
     /// # Panics
     /// If the body was removed.
@@ -211,11 +213,7 @@ impl Simulation {
     /// ```
     pub fn set_surface_velocity(&mut self, body: BodyId, velocity: DVec3) -> Result<(), SimulationError> {
         let place = self.place(body);
-        if !velocity.is_finite() {
-            let body = self.bodies[place].name.to_string();
-            let (name, value) = ("surface velocity", shown(velocity.to_array()));
-            return Err(SimulationError::BadBody { body, name, value, reason: FINITE });
-        }
+        check_surface(&self.bodies[place].name, velocity, &self.options)?;
         self.bodies[place].surface_velocity = velocity;
         self.drop_known(place);
         Ok(())

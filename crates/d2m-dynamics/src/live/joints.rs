@@ -29,12 +29,17 @@ impl Simulation {
     /// # Errors
     /// [`SimulationError::BadJoint`]: numbers that cannot be used, or no body that could move. Nothing changes then.
     pub fn add_joint(&mut self, joint: &Joint) -> Result<usize, SimulationError> {
-        let b = match joint.b {
-            Some(b) => self.place(b),
-            None => self.world()?,
-        };
         let a = self.place(joint.a);
-        let joined = Joined::try_new(joint, [a, b], &self.bodies)?;
+        let joined = if let Some(b) = joint.b.map(|b| self.place(b)).or(self.world) {
+            Joined::try_new(joint, [a, b], [a, b].map(|i| &self.bodies[i]))?
+        } else {
+            // A place is given to the world once nothing is refused any more.
+            let world = self.new_world()?;
+            let made = Joined::try_new(joint, [a, self.next_index()], [&self.bodies[a], &world])?;
+            self.settle_world(world, None);
+            made
+        };
+        let [_, b] = joined.bodies;
         if !joint.collide {
             self.ignored.insert((a.min(b), a.max(b)));
         }
@@ -78,7 +83,8 @@ impl Simulation {
         self.joints.get(joint).filter(|joined| !joined.is_gone()).map(|joined| &joined.joint)
     }
 
-    /// Sets the motor of a joint, or none; a robot is driven by this from step to step. Wakes its bodies.
+    /// Sets the motor of a joint, or none; a robot is driven by this from step to step. Wakes its bodies. They may
+    /// have become static since the joint was added: the motor acts once one of them is dynamic.
     ///
     /// # Errors
     /// [`SimulationError::BadJoint`]: numbers that cannot be used. Nothing changes then.
@@ -88,7 +94,7 @@ impl Simulation {
     pub fn set_motor(&mut self, joint: usize, motor: Option<Motor>) -> Result<(), SimulationError> {
         let joined = self.there(joint);
         let changed = Joint { motor, ..joined.joint.clone() };
-        Joined::try_new(&changed, joined.bodies, &self.bodies)?;
+        Joined::check_numbers(&changed, joined.bodies.map(|place| &self.bodies[place]))?;
         self.joints[joint].joint = changed;
         for place in self.joints[joint].bodies {
             self.wake_place(place);

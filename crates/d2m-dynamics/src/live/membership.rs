@@ -1,6 +1,7 @@
 //! Adding, replacing and removing bodies, and the one function that forgets what was proven of them.
 
 use crate::body::rigid_body::{RigidBody, Role};
+use crate::numbers::check_surface;
 use crate::pairs::known::Pair;
 use crate::rest::quiet::Quiet;
 use crate::{Body, BodyId, Simulation, SimulationError};
@@ -15,16 +16,18 @@ impl Simulation {
     /// # Errors
     /// Numbers that cannot be used; missing mass properties. Nothing changes then.
     pub fn add(&mut self, body: &Body) -> Result<BodyId, SimulationError> {
-        self.add_at(body, None)
+        let made = self.made(body)?;
+        Ok(self.settle_in(made, None))
     }
 
-    /// Adds a body at this place, or the first free one.
-    pub(crate) fn add_at(&mut self, body: &Body, place: Option<usize>) -> Result<BodyId, SimulationError> {
+    /// Makes a body that has no place yet.
+    pub(crate) fn made(&self, body: &Body) -> Result<RigidBody, SimulationError> {
         let same = self.bodies.iter().find(|other| Arc::ptr_eq(&other.tree, &body.tree));
         let faces =
             same.map_or_else(|| Arc::new(Faces::new(body.tree.mesh())), |other| Arc::clone(&other.faces));
-        let body = RigidBody::try_new(body, faces, self.time)?;
-        Ok(self.settle_in(body, place))
+        let made = RigidBody::try_new(body, faces, self.time)?;
+        check_surface(&body.name, body.surface_velocity, &self.options)?;
+        Ok(made)
     }
 
     /// As [`Self::add`], but a body that intersects another one that it meets is refused at once.
@@ -132,7 +135,7 @@ impl Simulation {
     }
 
     /// Gives a body the first free place, or the wanted one if it is free.
-    fn settle_in(&mut self, body: RigidBody, wanted: Option<usize>) -> BodyId {
+    pub(crate) fn settle_in(&mut self, body: RigidBody, wanted: Option<usize>) -> BodyId {
         let is_free = |place: &usize| self.bodies.get(*place).is_none_or(|body| body.role == Role::Vacant);
         let place = wanted.filter(is_free).unwrap_or_else(|| self.next_index());
         // Places before it that were given up come back.

@@ -55,8 +55,8 @@ impl RigidBody {
         self.angular_momentum = r * (self.inertia * (r.transpose() * velocity.angular));
     }
 
-    /// The same body with another kind, at its place. A kinematic body goes on with the velocity of its
-    /// flight.
+    /// The same body with another kind, at its place. The points of a kinematic body go on with the
+    /// velocities of its flight, also where its center of mass is another point than the center of its motion.
     pub(crate) fn with_kind(&self, kind: Kind, time: f64) -> Result<Self, SimulationError> {
         let velocity = match kind {
             Kind::Dynamic if self.is_dynamic() => self.velocity(),
@@ -81,10 +81,19 @@ impl RigidBody {
             surface_velocity: self.surface_velocity,
             presence: Presence::Solid,
         };
-        let made = Self::try_new(&described, Arc::clone(&self.faces), time)?;
+        let mut made = Self::try_new(&described, Arc::clone(&self.faces), time)?;
+        if made.is_dynamic() && made.center != self.center {
+            // The velocity so far is that of another point.
+            let arm = made.orientation * (made.center - self.center);
+            let linear = velocity.linear + velocity.angular.cross(arm);
+            made.set_velocity(Velocity { linear, ..velocity });
+            let given = [("velocity", linear), ("angular velocity", velocity.angular)];
+            made.check_momenta(given, [DVec3::ZERO; 2])?;
+        }
         let (force, torque) = if made.is_dynamic() { (self.force, self.torque) } else { Default::default() };
+        let faded = if self.is_dynamic() { self.faded } else { made.faded };
         let (id, role, version) = (self.id, self.role, self.version);
-        Ok(Self { id, role, force, torque, version, ..made })
+        Ok(Self { id, role, faded, force, torque, version, ..made })
     }
 
     /// Starts anew at the present place: the last flight is forgotten.

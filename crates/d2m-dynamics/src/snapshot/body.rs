@@ -41,7 +41,7 @@ pub(crate) struct BodyState {
     friction: f64,
     damping: Damping,
     groups: Groups,
-    surface_velocity: DVec3,
+    pub(crate) surface_velocity: DVec3,
     target: Option<Target>,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) held: Held<HeldBody>,
@@ -50,6 +50,9 @@ pub(crate) struct BodyState {
     orientation: DQuat,
     momentum: DVec3,
     angular_momentum: DVec3,
+    /// None: not beyond its time.
+    #[cfg_attr(feature = "serde", serde(default))]
+    faded: Option<f64>,
     force: DVec3,
     torque: DVec3,
     /// As it was flown: from its start, and the time of that.
@@ -93,6 +96,7 @@ impl BodyState {
             orientation: body.orientation,
             momentum: body.momentum,
             angular_momentum: body.angular_momentum,
+            faded: (body.faded > body.time).then_some(body.faded),
             force: body.force,
             torque: body.torque,
             flight: body.flight,
@@ -145,6 +149,7 @@ impl BodyState {
         body.time = self.time;
         (body.position, body.orientation) = (self.position, self.orientation);
         (body.momentum, body.angular_momentum) = (self.momentum, self.angular_momentum);
+        body.faded = self.faded.unwrap_or(f64::NEG_INFINITY);
         (body.force, body.torque) = (self.force, self.torque);
         body.horizon = self.horizon.unwrap_or(f64::INFINITY);
         (body.version, body.has_flown) = (self.version, self.has_flown);
@@ -214,6 +219,9 @@ impl BodyState {
         {
             return bad("end of the flight", shown([horizon]));
         }
+        if let Some(faded) = self.faded.filter(|faded| !faded.is_finite()) {
+            return bad("end of the damping", shown([faded]));
+        }
         if !self.gained.is_finite() {
             return bad("account of energy", shown([self.gained]));
         }
@@ -264,7 +272,7 @@ mod tests {
     #[test]
     fn numbers_that_no_body_has_are_refused_by_their_names() {
         let body = flown();
-        let changes: [(&str, Change); 20] = [
+        let changes: [(&str, Change); 21] = [
             ("position", &|s| s.position.x = f64::NAN),
             ("orientation", &|s| s.orientation *= 1.001),
             ("orientation", &|s| s.orientation = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0)),
@@ -282,6 +290,7 @@ mod tests {
             ("angular velocity of the flight", &|s| s.flight = s.flight.with_angular_velocity(HUGE)),
             ("time", &|s| s.time = 0.4),
             ("end of the flight", &|s| s.horizon = Some(0.1)),
+            ("end of the damping", &|s| s.faded = Some(f64::INFINITY)),
             ("account of energy", &|s| s.gained = f64::NAN),
             ("number of flights", &|s| s.version = u64::MAX),
             ("target", &|s| {

@@ -2,7 +2,7 @@
 
 use crate::body::rigid_body::{RigidBody, Role};
 use crate::joint::rows::Joined;
-use crate::numbers::{Fault, material_fault};
+use crate::numbers::{Fault, check_surface, material_fault};
 use crate::shown::shown;
 use crate::snapshot::body::BodyState;
 use crate::snapshot::contents::Source;
@@ -184,14 +184,13 @@ impl Simulation {
         snapshot.check()?;
         let mut next = self.clone();
         next.make_way(snapshot);
-        if snapshot.world.is_some() {
-            next.world_at(snapshot.world)?;
-        }
+        snapshot.world.map_or(Ok(()), |place| next.have_world(place))?;
         let mut own_places = BTreeSet::new();
         for state in &snapshot.bodies {
             let place = state.id.index();
             let missing = SimulationError::Snapshot { place };
             let own = next.bodies.get_mut(place).filter(|own| snapshot.has(own, place)).ok_or(missing)?;
+            check_surface(&own.name, state.surface_velocity, &snapshot.options)?;
             *own = state.restored(own, snapshot.time)?;
             own.id = state.id;
             if snapshot.world == Some(place) || state.is_of(own) {
@@ -325,7 +324,7 @@ mod tests {
             simulation.clone().restore(&changed).unwrap_err().to_string()
         };
         let pair = "cube and cube";
-        let changes: [(&str, &str, Change); 13] = [
+        let changes: [(&str, &str, Change); 15] = [
             ("", "time", &|s| s.time = f64::INFINITY),
             ("", "steps", &|s| s.steps = u64::MAX),
             ("", "greatest energy", &|s| s.greatest_energy = f64::NAN),
@@ -337,6 +336,8 @@ mod tests {
             (pair, "pair", &|s| s.joints[0].bodies = [0, 0]),
             (pair, "limits", &|s| s.joints[0].joint.limits = Some([1.0, 0.0])),
             (pair, "friction", &|s| s.joints[0].joint.friction = -1.0),
+            (pair, "times of the forces", &|s| s.joints[0].acted.from = f64::NAN),
+            (pair, "motor's impulse", &|s| s.joints[0].owed = f64::INFINITY),
             (pair, "restitution", &|s| s.materials[0].restitution = 2.0),
             (pair, "friction", &|s| s.materials[0].friction = f64::NAN),
         ];

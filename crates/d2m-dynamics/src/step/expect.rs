@@ -1,10 +1,10 @@
 //! Expected contacts: those that flights are certain to lead to are solved before they are met.
 
 use super::event::{Cause, Event};
-use super::resolve::LEEWAY;
 use super::{FEW_ITEMS, Key, Occasion, Step};
 use crate::StepError;
 use crate::body::rigid_body::RigidBody;
+use crate::numbers::LEEWAY;
 use crate::pairs::closest_features::{AROUND, measure};
 use d2m_contact::ContactPoint;
 use d2m_mesh::parallel::map_owned;

@@ -5,6 +5,7 @@ mod event;
 mod expect;
 mod flights;
 mod hold;
+mod impulses;
 mod plan;
 mod resolve;
 mod sense;
@@ -13,7 +14,7 @@ mod slide;
 
 use crate::body::rigid_body::RigidBody;
 use crate::flight::rows::HIT;
-use crate::{ContactListener, Simulation, StepError, StepReport};
+use crate::{ContactImpulse, ContactListener, Simulation, StepError, StepReport};
 use connected::Sleepers;
 use d2m_contact::{ContactPoint, Momenta};
 use event::{Cause, Event};
@@ -81,7 +82,7 @@ pub(crate) struct Step<'s> {
     slips: BTreeSet<usize>,
     /// The number of events so far at which bodies bounced.
     bounces: u32,
-    /// The impulses of motors so far in this step, by joint.
+    /// The impulses of motors so far in this step, by joint, with those that they owe from the last one.
     spent: BTreeMap<usize, f64>,
     replans: Replans,
     /// The time at which flights end that were planned again.
@@ -91,6 +92,8 @@ pub(crate) struct Step<'s> {
     /// flights are planned again.
     impulses: Vec<ContactPoint>,
     undoable: Vec<ContactPoint>,
+    /// Impulses that are reported, and of which the listener has not been told.
+    unheard: Vec<ContactImpulse>,
     /// Pairs between which impulses have acted, and what these added to the momenta of each body.
     pressed: BTreeMap<Key, [Momenta; 2]>,
     /// The time until which sensors have been evaluated.
@@ -115,6 +118,8 @@ impl<'s> Step<'s> {
         let start = sim.time;
         let woken = vec![None; sim.bodies.len()];
         let (count, has_joints) = (sim.len(), sim.has_joints());
+        let owing = sim.joints.iter().enumerate().filter(|(_, joined)| joined.owed != 0.0);
+        let spent = owing.map(|(number, joined)| (number, joined.owed)).collect();
         let sleepers = if sim.sleeps_in_parts() { Sleepers::Bear } else { Sleepers::Wake };
         Self {
             sim,
@@ -127,12 +132,13 @@ impl<'s> Step<'s> {
             holding: false,
             slips: BTreeSet::new(),
             bounces: 0,
-            spent: BTreeMap::new(),
+            spent,
             replans: Replans::default(),
             planned: None,
             expected: Expected::default(),
             impulses: Vec::new(),
             undoable: Vec::new(),
+            unheard: Vec::new(),
             pressed: BTreeMap::new(),
             sensed: start,
             woken,
@@ -143,14 +149,25 @@ impl<'s> Step<'s> {
         }
     }
 
-    pub(crate) fn run(mut self) -> Result<StepReport, StepError> {
+    /// Flies to the end of the step. `before`: the simulation before it, as which it is left by an error before
+    /// anything has moved.
+    pub(crate) fn run(mut self, before: Simulation) -> Result<StepReport, StepError> {
         // Listeners and motions are foreign code: where one panics the step ends as after an error, then the
         // panic goes on.
         let flown = catch_unwind(AssertUnwindSafe(|| self.fly_through().and_then(|()| self.sense(self.end))));
-        let heard = catch_unwind(AssertUnwindSafe(|| self.report_impulses()));
-        // Also after an error: the flights until then are certified.
-        let time = if matches!(flown, Ok(Ok(()))) { self.end } else { self.sim.time };
-        self.finish(time);
+        let is_flown = matches!(flown, Ok(Ok(())));
+        let heard = catch_unwind(AssertUnwindSafe(|| {
+            self.report_impulses();
+            if is_flown {
+                self.tell();
+            }
+        }));
+        if is_flown || self.sim.time > self.start {
+            // Also after an error: the flights until then are certified.
+            self.finish(if is_flown { self.end } else { self.sim.time });
+        } else {
+            *self.sim = before;
+        }
         heard.and(flown).unwrap_or_else(|panic| resume_unwind(panic))?;
         self.report.segments = self.sim.recorder.take();
         self.report.touches = core::mem::take(&mut self.sim.touches);
@@ -167,10 +184,10 @@ impl<'s> Step<'s> {
         for &i in &awake {
             let body = &mut self.sim.bodies[i];
             body.time = self.start;
-            body.damp(self.end - self.start);
+            body.damp(self.end);
         }
         let sim = &mut *self.sim;
-        for joined in &mut sim.joints {
+        for joined in sim.joints.iter_mut().filter(|joined| !joined.is_gone()) {
             joined.look(joined.bodies.map(|i| &sim.bodies[i]));
         }
         self.resolve(self.start, awake, Occasion::Start)?;
@@ -320,6 +337,7 @@ impl<'s> Step<'s> {
             body.time = time;
             body.held = false;
         }
+        self.settle_motors(time);
         self.sim.end_touches(self.start, &self.pressed);
         for body in &mut self.sim.bodies {
             (body.force, body.torque) = (DVec3::ZERO, DVec3::ZERO);

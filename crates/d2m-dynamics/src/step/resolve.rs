@@ -2,15 +2,15 @@
 
 use super::connected::{Group, Sleepers};
 use super::{FEW_ITEMS, Occasion, Step};
+use crate::StepError;
 use crate::body::rigid_body::RigidBody;
 use crate::flight::group::{CROWD, Push, Solved, islands, solve};
 use crate::flight::length::Clock;
 use crate::flight::path::Splits;
 use crate::flight::solved_body::moves;
-use crate::{ContactImpulse, StepError};
+use crate::numbers::LEEWAY;
 use d2m_contact::{Company, ContactPoint, Velocity};
 use d2m_mesh::parallel::map_owned;
-use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// Rounds in which bodies are added on which others press; then all bodies that contacts connect are solved.
@@ -24,9 +24,6 @@ const SAME: f64 = 1.0 / 1024.0;
 /// Expected contacts of up to so many bodies of a crowd are solved with the bodies on which these press, and
 /// not with all that are connected.
 const FEW: usize = 8;
-/// The part of the gap by which a contact may close in the rest of the step before its body is solved with
-/// the others.
-pub(super) const LEEWAY: f64 = 1.0 / 16.0;
 
 /// The bodies that are solved at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,6 +74,7 @@ impl Step<'_> {
                 && body.horizon == horizon
                 && off.surface_speed(body.radius) <= most
         };
+        let (gravity, step) = (self.sim.options.gravity, self.sim.options.step);
         let mut changed: Vec<usize> = Vec::new();
         let mut solved_for = vec![false; self.sim.bodies.len()];
         for part in solved {
@@ -95,14 +93,13 @@ impl Step<'_> {
                 body.lead = Some(push.lead);
                 body.free = false;
                 if !is_same(body, push.body, push.velocity, push.horizon) {
-                    body.try_fly(push.velocity, push.horizon)?;
+                    body.try_fly(push.velocity, push.horizon, gravity)?;
                     changed.push(push.body);
                 }
                 solved_for[push.body] = true;
             }
             self.keep(part, occasion);
         }
-        let (gravity, step) = (self.sim.options.gravity, self.sim.options.step);
         let splits = if self.count > CROWD { Splits::Common } else { Splits::Own };
         for &i in &group.members {
             let body = &mut self.sim.bodies[i];
@@ -113,7 +110,7 @@ impl Step<'_> {
                 body.lead = Some(body.lead.unwrap_or(0.5 * length));
                 body.free = true;
                 if !is_same(body, i, velocity, horizon) {
-                    body.try_fly(velocity, horizon)?;
+                    body.try_fly(velocity, horizon, gravity)?;
                     changed.push(i);
                 }
             } else if body.is_kinematic() && body.flight.reference_time() == time {
@@ -332,41 +329,6 @@ impl Step<'_> {
         }
         append(&mut self.impulses, solved.impacts);
         append(&mut self.undoable, solved.rests);
-    }
-
-    /// Reports the impulses of the present instant, as those of the segment that ends here.
-    pub(super) fn report_impulses(&mut self) {
-        let [first, last] = [&mut self.impulses, &mut self.undoable].map(core::mem::take);
-        let impulses = || first.iter().chain(&last);
-        for contact in impulses().filter(|contact| contact.row.is_some_and(|row| row.is_motor)) {
-            if let Some(number) = contact.joint() {
-                *self.spent.entry(number).or_default() += contact.impulse;
-            }
-        }
-        let mut heard = Vec::new();
-        for contact in impulses().filter(|contact| contact.row.is_none()) {
-            let impulse = contact.total();
-            if impulse != DVec3::ZERO {
-                let impulse = ContactImpulse {
-                    a: self.sim.bodies[contact.a].id,
-                    b: self.sim.bodies[contact.b].id,
-                    point: contact.point,
-                    normal: contact.normal,
-                    impulse: -impulse,
-                    time: self.sim.time,
-                };
-                self.sim.recorder.contact(impulse);
-                let pressed = self.pressed.entry((contact.a, contact.b)).or_default();
-                for (on, pressed) in pressed.iter_mut().enumerate() {
-                    *pressed = *pressed + contact.exerted(on);
-                }
-                self.sim.begin_touch((contact.a, contact.b), impulse.time);
-                heard.push(impulse);
-            }
-        }
-        for impulse in &heard {
-            self.listener.contact(impulse);
-        }
     }
 }
 
