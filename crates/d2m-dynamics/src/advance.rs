@@ -1,5 +1,6 @@
 //! The simulation in time: steps, and the rest to be reported at the end.
 
+use crate::body::rigid_body::RigidBody;
 use crate::listener::{ContactListener, Nobody};
 use crate::step::Step;
 use crate::{Segment, Simulation, SimulationError, StepError, StepReport};
@@ -104,9 +105,13 @@ impl Simulation {
             let wanted = "after the present time";
             return Err(SimulationError::BadOption { name: "end of the step", value: end, wanted }.into());
         }
-        let before = self.as_it_is();
+        // Where all sleep nothing can move, nor can a step fail before it does.
+        let may_move = !self.unchecked.is_empty() || self.bodies.iter().any(RigidBody::is_awake);
+        let before = may_move.then(|| self.as_it_is());
         if let Err(error) = self.check_start() {
-            *self = before;
+            if let Some(before) = before {
+                *self = before;
+            }
             return Err(error);
         }
         Step::new(self, end, listener).run(before)

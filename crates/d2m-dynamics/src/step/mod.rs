@@ -150,8 +150,8 @@ impl<'s> Step<'s> {
     }
 
     /// Flies to the end of the step. `before`: the simulation before it, as which it is left by an error before
-    /// anything has moved.
-    pub(crate) fn run(mut self, before: Simulation) -> Result<StepReport, StepError> {
+    /// anything has moved; none where all sleep.
+    pub(crate) fn run(mut self, before: Option<Simulation>) -> Result<StepReport, StepError> {
         // Listeners and motions are foreign code: where one panics the step ends as after an error, then the
         // panic goes on.
         let flown = catch_unwind(AssertUnwindSafe(|| self.fly_through().and_then(|()| self.sense(self.end))));
@@ -162,11 +162,11 @@ impl<'s> Step<'s> {
                 self.tell();
             }
         }));
-        if is_flown || self.sim.time > self.start {
+        let has_moved = is_flown || self.sim.time > self.start;
+        match before.filter(|_| !has_moved) {
+            Some(before) => *self.sim = before,
             // Also after an error: the flights until then are certified.
-            self.finish(if is_flown { self.end } else { self.sim.time });
-        } else {
-            *self.sim = before;
+            None => self.finish(if is_flown { self.end } else { self.sim.time }),
         }
         heard.and(flown).unwrap_or_else(|panic| resume_unwind(panic))?;
         self.report.segments = self.sim.recorder.take();
