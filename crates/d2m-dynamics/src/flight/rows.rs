@@ -135,15 +135,19 @@ pub(crate) fn select<'b>(
 /// ```
 ///
 /// The second one, and the same with the bodies exchanged, is small for a wheel that turns with its axle. It
-/// counts where the first one asks for more than a gap in a step, which is granted in any case.
+/// counts where the first one asks for more than a gap in a step, which is granted in any case, and where one
+/// body lies in the other: their centers are nearer to each other than half of both arms.
 fn bend(contact: &ContactPoint, [of_a, of_b]: [DVec3; 2], span: Span) -> f64 {
     let across = |spin: DVec3| spin.cross(contact.normal).length();
     let of = |spin: DVec3, arm: DVec3| across(spin) * spin.length() * arm.length();
     let apart = of(of_a, contact.arm_a) + of(of_b, contact.arm_b);
-    if 0.5 * span.remaining * apart <= contact.gap / span.step {
+    let is_granted = 0.5 * span.remaining * apart <= contact.gap / span.step;
+    let way = contact.arm_a - contact.arm_b;
+    let is_inside = 2.0 * way.length() <= contact.arm_a.length() + contact.arm_b.length();
+    if is_granted || !is_inside {
         return apart;
     }
-    let (way, against) = (contact.arm_a - contact.arm_b, of_b - of_a);
+    let against = of_b - of_a;
     let common = |spin: DVec3, arm: DVec3| {
         let sliding = across(spin) * against.length() + across(against) * (spin.length() + against.length());
         of(spin, way) + sliding * arm.length()
