@@ -5,8 +5,10 @@
 //! acted by the impulse that it was solved with; the next flight has its impulse from there on.
 
 use crate::joint::description::{Joint, Motor, MotorTarget};
-use crate::joint::rows::TAKEN_BACK;
 use d2m_contact::Law;
+
+/// The part of a joint's position error that a step corrects.
+pub(crate) const TAKEN_BACK: f64 = 0.2;
 
 /// A force along the value of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

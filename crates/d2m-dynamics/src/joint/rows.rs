@@ -3,16 +3,13 @@
 use crate::SimulationError;
 use crate::body::rigid_body::RigidBody;
 use crate::joint::description::{Joint, JointKind, Motor, MotorTarget};
-use crate::joint::force::Acted;
+use crate::joint::force::{Acted, TAKEN_BACK};
 use crate::numbers::{FINITE, NOT_NEGATIVE, UNUSABLE, direction, is_small};
 use crate::shown::{shown, shown_turn};
 use d2m_contact::{ContactPoint, JointPart, JointRow, Law, Material, tangents};
 use d2m_feature::FeaturePair;
 use d2m_motion::rotation_vector;
 use glam::{BVec3, DQuat, DVec3};
-
-/// The part of a joint's position error that a step corrects.
-pub(crate) const TAKEN_BACK: f64 = 0.2;
 
 /// A joint between two bodies of the list, the second one perhaps the world.
 #[derive(Clone, Debug, PartialEq)]
