@@ -92,7 +92,7 @@ pub(crate) struct Step<'s> {
     /// flights are planned again.
     impulses: Vec<ContactPoint>,
     undoable: Vec<ContactPoint>,
-    /// Impulses that are reported, and of which the listener has not been told.
+    /// Impulses that are reported, and that the listener has not heard of.
     unheard: Vec<ContactImpulse>,
     /// Pairs between which impulses have acted, and what these added to the momenta of each body.
     pressed: BTreeMap<Key, [Momenta; 2]>,
