@@ -22,8 +22,7 @@ const SETTLING: usize = 1 << 14;
 /// The most sweeps where they come first, and where they come last.
 const FIRST: u32 = 192;
 const SWEEPS: u32 = 60;
-/// Up to so many contacts for which an exact solution is asked are swept so often in the end, and once more without the impulses that other
-/// methods have found: that takes no longer than a direct solution of twenty bodies.
+/// An exact solution of up to so many contacts ends with up to so many sweeps, and with as many that begin without impulses where these fail.
 const FEW_BLOCKS: usize = 64;
 const FEW_SWEEPS: u32 = 4096;
 /// The residual may be so many times the tolerance for several moving bodies, and for a crowd.

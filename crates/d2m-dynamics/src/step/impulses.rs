@@ -48,6 +48,7 @@ impl Step<'_> {
             self.listener.contact(&impulse);
         }
     }
+
     /// A motor has its largest force for the time that is flown. Where the step ends early it owes the impulse
     /// that it had beyond that: it begins the next step with it.
     pub(super) fn settle_motors(&mut self, time: f64) {
@@ -57,7 +58,7 @@ impl Step<'_> {
             joined.owed = match (joined.joint.motor, spent) {
                 (Some(motor), Some(spent)) => {
                     let most = motor.most * flown;
-                    spent - spent.clamp(-most, most)
+                    spent - spent.max(-most).min(most)
                 }
                 _ => 0.0,
             };
