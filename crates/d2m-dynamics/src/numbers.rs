@@ -2,7 +2,7 @@
 
 use crate::shown::{shown, shown_turn};
 use crate::{SimulationError, SimulationOptions};
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec3, DVec4};
 
 /// No momentum, angular momentum or velocity of a body may exceed this: their products are still finite.
 pub(crate) const LARGEST: f64 = 1e100;
@@ -78,8 +78,7 @@ impl Numbers<'_> {
         if let Some((name, value)) = self.vectors.iter().find(|(_, v)| !v.is_finite()) {
             return bad(name, shown(value.to_array()), FINITE);
         }
-        let norm = self.orientation.length();
-        if !(norm.is_finite() && norm > 0.0) {
+        if turn(self.orientation).is_none() {
             return bad("orientation", shown_turn(self.orientation), "has no direction");
         }
         if let Some(Fault { name, value, reason, .. }) = material_fault(self.restitution, self.friction) {
@@ -131,15 +130,27 @@ pub(crate) fn is_small(v: DVec3) -> bool {
 /// The unit vector along a vector of any length but zero, which may be so short or long that its square is no
 /// number. None: it has no direction.
 pub(crate) fn direction(v: DVec3) -> Option<DVec3> {
-    let largest = v.abs().max_element();
-    let scaled = if largest < SHORT {
-        v * SCALE
-    } else if largest > SHORT.recip() {
-        v * SCALE.recip()
-    } else {
-        v
-    };
+    let scaled = v * squarable(v.abs().max_element());
     Some(scaled.normalize_or_zero()).filter(|way| *way != DVec3::ZERO)
+}
+
+/// The turn of a quaternion of any norm but zero, as [`direction`] of a vector. None: it is no turn.
+pub(crate) fn turn(q: DQuat) -> Option<DQuat> {
+    let scaled = q * squarable(DVec4::from(q).abs().max_element());
+    let norm = scaled.length();
+    (norm.is_finite() && norm > 0.0).then(|| scaled.normalize())
+}
+
+/// A power of two that brings numbers, of which this is the largest, to where their squares have all digits: one if
+/// they are there.
+fn squarable(largest: f64) -> f64 {
+    if largest < SHORT {
+        SCALE
+    } else if largest > SHORT.recip() {
+        SCALE.recip()
+    } else {
+        1.0
+    }
 }
 
 /// Has it the length one, to rounding?

@@ -2,10 +2,10 @@
 
 use d2m_bvh::{MeshTree, Solid, TriMesh};
 use d2m_dynamics::{
-    Body, Joint, JointKind, Kind, Mass, MassError, MassProperties, Motor, MotorTarget, Simulation,
+    Body, Joint, JointKind, Kind, Mass, MassError, MassProperties, Motor, MotorTarget, Part, Simulation,
     SimulationError, SimulationOptions, Spring, StepError,
 };
-use d2m_motion::ConstantTwist;
+use d2m_motion::{ConstantTwist, Pose};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
@@ -291,5 +291,83 @@ fn surfaces_are_no_faster_than_contacts_resolve() {
         let forged = written.replace(&format!("[{speed:?},0.0,0.0]"), "[1e16,0.0,0.0]");
         assert!(forged != written);
         assert!(simulation.restore(&serde_json::from_str(&forged).unwrap()).is_err());
+    }
+}
+
+/// A force acts on the momenta that a body has: where these are given after it what both come to is refused. Such states were refused as
+/// snapshots only, those of the simulation itself.
+#[test]
+fn forces_count_with_what_they_act_on() {
+    let near = DVec3::X * 0.9 * Simulation::LARGEST;
+    let mut simulation = empty();
+    let body = simulation.add(&cube().with_mass(Mass::Total(1.0))).unwrap();
+    simulation.set_force(body, near, DVec3::ZERO).unwrap();
+    let before = simulation.snapshot();
+    let refused = simulation.set_velocity(body, near, DVec3::ZERO).unwrap_err().to_string();
+    assert!(refused.starts_with("body cube: velocity ["), "{refused}");
+    let refused = simulation.apply_impulse(body, near, DVec3::ZERO).unwrap_err().to_string();
+    assert!(refused.starts_with("body cube: impulse ["), "{refused}");
+    assert_eq!(simulation.snapshot(), before);
+    simulation.set_velocity(body, -near, DVec3::ZERO).unwrap();
+    let snapshot = simulation.snapshot();
+    simulation.restore(&snapshot).unwrap();
+    // As large as its momentum may be, but not for so light a body.
+    let mut simulation = empty();
+    let light = cube().with_mass(Mass::Total(1e-10)).with_kind(Kind::Static);
+    let light = simulation.add(&light).unwrap();
+    simulation.set_force(light, near, DVec3::ZERO).unwrap();
+    let before = simulation.snapshot();
+    let refused = simulation.set_kind(light, Kind::Dynamic).unwrap_err().to_string();
+    assert!(refused.starts_with("body cube: force ["), "{refused}");
+    assert_eq!(simulation.snapshot(), before);
+    // A torque about the axis of a rod does more than one across it.
+    let rod = MassProperties {
+        mass: 1.0,
+        center: DVec3::ZERO,
+        inertia: DMat3::from_diagonal((1.0, 1e-3, 1.0).into()),
+    };
+    let mut simulation = empty();
+    let rod = simulation.add(&cube().with_mass(Mass::Given(rod))).unwrap();
+    simulation.set_force(rod, DVec3::ZERO, 0.5 * near).unwrap();
+    let before = simulation.snapshot();
+    let turned = Pose::new(DVec3::ZERO, DQuat::from_rotation_z(core::f64::consts::FRAC_PI_2));
+    assert!(matches!(simulation.set_pose(rod, turned), Err(SimulationError::TooLarge { .. })));
+    assert_eq!(simulation.snapshot(), before);
+}
+
+/// Of quaternions with squares that are no numbers, or have lost digits, a body was turned by one that is not of norm one, which the simulation
+/// refused as its own snapshot; others were said to have no direction.
+#[test]
+fn quaternions_have_any_norm_but_zero() {
+    let mesh = d2m_shapes::mesh("box?x=0.5&y=0.4&z=0.3").unwrap();
+    for norm in [5e-324, 1e-310, 1e-200, 1e-160, 3e-162, 1.0, 1e154, 1e200, 1.7e308] {
+        let turn = DQuat::from_xyzw(norm, 0.0, 0.0, norm);
+        let unit = DQuat::from_rotation_x(core::f64::consts::FRAC_PI_2);
+        let is_unit = |turned: DQuat| (turned - unit).length() < 1e-15;
+        let mut simulation = empty();
+        let added = simulation.add(&cube().with_orientation(turn)).unwrap();
+        let far = Pose { rotation: turn, ..Pose::new(DVec3::X * 9.0, DQuat::IDENTITY) };
+        let put = simulation.add(&cube()).unwrap();
+        simulation.set_pose(put, far).unwrap();
+        let far = Pose { translation: DVec3::X * -9.0, ..far };
+        let sent = simulation.add(&cube().with_kind(Kind::Driven).with_position(far.translation)).unwrap();
+        simulation.set_target(sent, far).unwrap();
+        let part = Part { orientation: turn, ..Part::new(&mesh) };
+        let placed = Body::of_parts("placed", &[part]).unwrap().with_position(DVec3::Y * 9.0);
+        let placed = simulation.add(&placed).unwrap();
+        assert!((simulation.radius(placed) - 0.5f64.sqrt()).abs() < 1e-12, "{norm:e}");
+        let snapshot = simulation.snapshot();
+        simulation.restore(&snapshot).unwrap();
+        simulation.step().unwrap();
+        for body in [added, put, sent] {
+            assert!(is_unit(simulation.orientation(body)), "{norm:e} {}", simulation.orientation(body));
+        }
+    }
+    for none in [[0.0; 4], [f64::NAN, 0.0, 0.0, 1.0], [f64::INFINITY, 0.0, 0.0, 1.0]] {
+        let turn = DQuat::from_array(none);
+        let refused = empty().add(&cube().with_orientation(turn)).unwrap_err().to_string();
+        assert!(refused.starts_with("body cube: orientation "), "{refused}");
+        let part = Part { orientation: turn, ..Part::new(&mesh) };
+        assert!(Body::of_parts("placed", &[part]).is_err());
     }
 }

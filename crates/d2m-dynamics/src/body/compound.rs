@@ -1,6 +1,6 @@
 //! Bodies of several meshes.
 
-use crate::numbers::UNUSABLE;
+use crate::numbers::{UNUSABLE, turn};
 use crate::shown::{shown, shown_turn};
 use crate::{Body, Mass, MassProperties, SimulationError};
 use d2m_bvh::{MeshTree, TriMesh};
@@ -70,14 +70,12 @@ impl Body {
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
         let mut masses = Vec::new();
         for (k, part) in parts.iter().enumerate() {
-            let norm = part.orientation.length();
-            if !(norm.is_finite() && norm > 0.0 && part.position.is_finite()) {
+            let Some(turn) = turn(part.orientation).filter(|_| part.position.is_finite()) else {
                 return Err(bad(
                     "place of part",
                     format!("{k}: {}, {}", shown(part.position.to_array()), shown_turn(part.orientation)),
                 ));
-            }
-            let turn = part.orientation.normalize();
+            };
             let placed: Vec<DVec3> = part.mesh.vertices().iter().map(|v| turn * *v + part.position).collect();
             let own = TriMesh::try_new(placed.clone(), part.mesh.triangles().to_vec());
             let own = own.map_err(|error| bad("mesh of part", format!("{k}: {error}")))?;

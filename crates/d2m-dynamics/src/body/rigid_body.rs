@@ -2,7 +2,7 @@
 
 use crate::body::description::{Body, BodyId, Damping, Groups, Kind, Mass, Presence};
 use crate::body::turning::Pull;
-use crate::numbers::{Numbers, is_small, unusable_of};
+use crate::numbers::{Numbers, is_small, turn, unusable_of};
 use crate::rest::quiet::Quiet;
 use crate::shown::shown;
 use crate::{MassProperties, SimulationError};
@@ -169,7 +169,7 @@ impl RigidBody {
                 let (pose, _) = covered.motion().pose_and_twist(time);
                 (pose.transform_point(DVec3::ZERO), pose.rotation.normalize())
             }
-            _ => (body.position, body.orientation.normalize()),
+            _ => (body.position, turn(body.orientation).unwrap_or_default()),
         };
         let position = mesh_position + orientation * center;
         let (mass, inertia) = properties.map_or((0.0, DMat3::ZERO), |p| (p.mass, p.inertia));
@@ -261,6 +261,13 @@ impl RigidBody {
             return refuse(given[1]);
         }
         Ok(())
+    }
+
+    /// Checks the momenta, with the given quantities that they come from, also once the force and torque of the user
+    /// have acted for a unit of time.
+    pub(crate) fn check_with_forces(&self, given: [(&'static str, DVec3); 2]) -> Result<(), SimulationError> {
+        self.check_momenta(given, [DVec3::ZERO; 2])?;
+        self.check_momenta(given, [self.force, self.torque])
     }
 
     pub(crate) fn is_dynamic(&self) -> bool {

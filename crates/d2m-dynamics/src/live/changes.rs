@@ -2,7 +2,7 @@
 
 use crate::body::description::{Damping, Groups, Kind};
 use crate::body::rigid_body::{RigidBody, Target};
-use crate::numbers::{Fault, check_surface, material_fault, unusable_of};
+use crate::numbers::{Fault, check_surface, material_fault, turn, unusable_of};
 use crate::shown::{shown, shown_turn};
 use crate::{BodyId, Motion, Simulation, SimulationError};
 use d2m_contact::{Material, Velocity};
@@ -50,7 +50,7 @@ impl Simulation {
         let moved = target.and_then(|target| own.moved(target.position, target.orientation, self.time));
         let moved = moved.ok_or_else(|| bad(format!("{}, {}", there(), shown_turn(pose.rotation))))?;
         let Velocity { linear, angular } = moved.velocity();
-        moved.check_momenta([("velocity", linear), ("angular velocity", angular)], [DVec3::ZERO; 2])?;
+        moved.check_with_forces([("velocity", linear), ("angular velocity", angular)])?;
         self.replace(place, moved)
     }
 
@@ -99,7 +99,7 @@ impl Simulation {
         let mut changed = own.clone();
         changed.set_velocity(Velocity { linear, angular });
         changed.faded = f64::NEG_INFINITY;
-        changed.check_momenta(given, [DVec3::ZERO; 2])?;
+        changed.check_with_forces(given)?;
         self.bodies[place] = changed;
         self.drop_known(place);
         Ok(())
@@ -258,6 +258,7 @@ impl Simulation {
     pub fn set_kind(&mut self, body: BodyId, kind: Kind) -> Result<(), SimulationError> {
         let place = self.place(body);
         let changed = self.bodies[place].with_kind(kind, self.time)?;
+        changed.check_with_forces([("force", changed.force), ("torque", changed.torque)])?;
         self.replace(place, changed)
     }
 
@@ -354,7 +355,7 @@ impl Simulation {
         if !self.ignored.remove(&key) {
             return Ok(());
         }
-        if let Err(error) = self.check_place(key.0) {
+        if let Err(error) = self.check_pair(key.0, key.1) {
             self.ignored.insert(key);
             return Err(error);
         }
@@ -412,9 +413,7 @@ fn check_material(restitution: f64, friction: f64) -> Result<(), SimulationError
 
 /// The center and the axes of a body whose mesh frame has this pose; none: the numbers are not finite.
 fn target(body: &RigidBody, pose: Pose) -> Option<Target> {
-    let norm = pose.rotation.length();
-    let is_turn = norm.is_finite() && norm > 0.0;
-    let orientation = pose.rotation.normalize();
+    let orientation = turn(pose.rotation)?;
     let position = Pose { rotation: orientation, ..pose }.transform_point(body.center);
-    (is_turn && position.is_finite()).then_some(Target { position, orientation })
+    position.is_finite().then_some(Target { position, orientation })
 }

@@ -87,7 +87,9 @@ impl Simulation {
     ) -> Result<(), SimulationError> {
         let place = self.place(body);
         let body = &mut self.bodies[place];
-        body.check_momenta([("impulse", impulse), ("angular impulse", angular)], [impulse, angular])?;
+        let given = [("impulse", impulse), ("angular impulse", angular)];
+        body.check_momenta(given, [impulse, angular])?;
+        body.check_momenta(given, [impulse + body.force, angular + body.torque])?;
         if body.is_dynamic() {
             body.momentum += impulse;
             body.angular_momentum += angular;

@@ -125,18 +125,21 @@ impl Simulation {
     /// # Errors
     /// [`SimulationError::Intersecting`], with the body that it intersects.
     pub(crate) fn check_place(&self, place: usize) -> Result<(), SimulationError> {
+        let mut others = (0..self.bodies.len()).filter(|other| *other != place);
+        others.try_for_each(|other| self.check_pair(place, other))
+    }
+
+    /// Checks that two bodies do not intersect, if they meet. They may touch.
+    ///
+    /// # Errors
+    /// [`SimulationError::Intersecting`].
+    pub(crate) fn check_pair(&self, a: usize, b: usize) -> Result<(), SimulationError> {
         let (gap, now) = (self.options.gap, self.time);
-        let body = &self.bodies[place];
-        let own = posed(body, now, gap);
-        for (other, two) in self.bodies.iter().enumerate().filter(|(other, _)| *other != place) {
-            let is_near = self.meets(place, other)
-                && !are_spheres_apart(body, two, now, now, gap)
-                && own.may_meet(&posed(two, now, gap), 0.0);
-            if is_near {
-                self.placed(place.min(other), place.max(other))?;
-            }
-        }
-        Ok(())
+        let (one, two) = (&self.bodies[a], &self.bodies[b]);
+        let is_near = self.meets(a, b)
+            && !are_spheres_apart(one, two, now, now, gap)
+            && posed(one, now, gap).may_meet(&posed(two, now, gap), 0.0);
+        if is_near { self.placed(a.min(b), a.max(b)).map(|_| ()) } else { Ok(()) }
     }
 
     /// Checks that no two checked bodies intersect. The next step checks the others.
