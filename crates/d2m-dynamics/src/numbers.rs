@@ -22,6 +22,9 @@ const SCALE: f64 = f64::from_bits((1023 + 600) << 52);
 /// others.
 pub(crate) const LEEWAY: f64 = 1.0 / 16.0;
 
+/// 2⁻²⁰: in this part of a step what turns by a radian in all of it changes its velocity by a millionth.
+const INSTANT: f64 = 1.0 / (1u64 << 20) as f64;
+
 /// Reasons for which numbers are refused.
 pub(crate) const UNUSABLE: &str = "cannot be used";
 pub(crate) const FINITE: &str = "must be finite";
@@ -151,6 +154,13 @@ fn squarable(largest: f64) -> f64 {
     } else {
         1.0
     }
+}
+
+/// Do the ends of a flight of this length, this far from the origin, say how fast it is, to a part of a gap a step?
+/// Else what they differ by may be their rounding, in flights so short that the velocity at the start says it better.
+pub(crate) fn is_resolved(extent: f64, length: f64, off: f64, options: &SimulationOptions) -> bool {
+    let rounding = f64::EPSILON * extent;
+    length > INSTANT * options.step || rounding <= off * options.gap * (length / options.step)
 }
 
 /// Has it the length one, to rounding?

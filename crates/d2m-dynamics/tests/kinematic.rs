@@ -300,3 +300,34 @@ fn gears_that_bounce_on_their_pin_have_room() {
     assert!(report.segments.iter().all(|segment| segment.skipped == 0.0));
     assert!(report.events > 10 && simulation.angular_velocity(driven).z < -50.0, "{}", report.events);
 }
+
+/// A lift carries a box, wherever it is, also in a step to the next double: it had the velocity by which the rounding of its place differs then,
+/// and threw the box up by centimetres.
+#[test]
+fn the_shortest_steps_throw_nothing_off_a_lift() {
+    let plate = tree("box?x=2&y=0.5&z=2");
+    for start in (0..30).map(|k| 0.0137 * f64::from(k)) {
+        for short in [0.0, 1e-16, 1e-15, 1e-13] {
+            let place = DVec3::new(start, 0.1 * start, 0.0);
+            let rising = ConstantTwist::REST.with_position(place);
+            let rising = rising.with_linear_velocity(DVec3::new(0.1, 0.3, 0.0));
+            let mut simulation = Simulation::new(SimulationOptions::default()).unwrap();
+            let lift = Body::new("lift", Arc::clone(&plate))
+                .with_friction(0.5)
+                .with_kind(Kind::Kinematic(Arc::new(rising)));
+            let lift = simulation.add(&lift).unwrap();
+            let load =
+                Body::new("load", ground::cube()).with_friction(0.5).with_position(place + DVec3::Y * 1.001);
+            let load = simulation.add(&load).unwrap();
+            for _ in 0..20 {
+                simulation.step().unwrap();
+            }
+            simulation.step_to((simulation.time() + short).max(simulation.time().next_up())).unwrap();
+            for _ in 0..10 {
+                simulation.step().unwrap();
+                let apart = simulation.position(load).y - simulation.position(lift).y;
+                assert!((apart - 1.001).abs() < 2e-4, "{start} {short:e}: {apart}");
+            }
+        }
+    }
+}

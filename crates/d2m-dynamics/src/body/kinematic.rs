@@ -2,8 +2,8 @@
 
 use crate::body::description::Kind;
 use crate::body::rigid_body::RigidBody;
-use crate::numbers::is_small;
-use crate::{SimulationError, StepError};
+use crate::numbers::{is_resolved, is_small};
+use crate::{SimulationError, SimulationOptions, StepError};
 use d2m_contact::Velocity;
 use d2m_interval::{Interval, IntervalVec3};
 use d2m_motion::{CoveredMotion, RigidMotion as _, rotation_vector};
@@ -44,7 +44,7 @@ impl RigidBody {
     /// # Errors
     /// [`StepError::TooFast`] where no flight that is long enough stays close; a motion that does not cover
     /// the step.
-    pub(crate) fn follow(&mut self, end: f64, gap: f64) -> Result<(), StepError> {
+    pub(crate) fn follow(&mut self, end: f64, options: &SimulationOptions) -> Result<(), StepError> {
         let start = self.time;
         if matches!(self.kind, Kind::Driven) {
             return self.follow_target(end);
@@ -52,8 +52,8 @@ impl RigidBody {
         let Some(motion) = self.covered_motion(start, end)? else { return Ok(()) };
         let mut horizon = motion.motion().smooth_until(start).map_or(end, |joint| end.min(joint));
         for _ in 0..=MOST_HALVINGS {
-            let piece = self.piece(motion, start, horizon);
-            if is_slow(piece.velocity) && self.bound_deviation(motion, &piece) <= OFF_MOTION * gap {
+            let piece = self.piece(motion, [start, horizon], options);
+            if is_slow(piece.velocity) && self.bound_deviation(motion, &piece) <= OFF_MOTION * options.gap {
                 self.fly(piece.velocity, horizon);
                 return Ok(());
             }
@@ -130,12 +130,21 @@ impl RigidBody {
         (pose.transform_point(self.center), pose.rotation.normalize())
     }
 
-    fn piece(&self, motion: CoveredMotion<'_>, start: f64, end: f64) -> Piece {
+    /// The motion between two times. Where they are so near that its poses do not say how fast it is, it has its
+    /// velocity at the start.
+    fn piece(&self, motion: CoveredMotion<'_>, [start, end]: [f64; 2], options: &SimulationOptions) -> Piece {
         let length = end - start;
-        let (last_x, last_q) = self.place_by(motion, end);
-        let velocity = Velocity {
-            linear: (last_x - self.position) / length,
-            angular: rotation_vector(last_q * self.orientation.conjugate()) / length,
+        let (pose, twist) = motion.motion().pose_and_twist(start);
+        let arm = pose.transform_vector(self.center - pose.at);
+        let extent = self.position.length() + arm.length();
+        let velocity = if is_resolved(extent, length, OFF_MOTION, options) {
+            let (last_x, last_q) = self.place_by(motion, end);
+            Velocity {
+                linear: (last_x - self.position) / length,
+                angular: rotation_vector(last_q * self.orientation.conjugate()) / length,
+            }
+        } else {
+            Velocity { linear: twist.velocity_of(arm), angular: twist.angular }
         };
         Piece { time: Interval::new(start, end), length, velocity }
     }

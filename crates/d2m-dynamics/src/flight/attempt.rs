@@ -29,7 +29,7 @@ const RELATIVE: f64 = 1.0 / 1024.0;
 const SHARED: f64 = 1.0 / 64.0;
 /// Flights may end off their joints by this part of a gap a step. A larger error is not corrected but
 /// diverges, as where the end of a long chain whips round, and shorter flights are solved for.
-const OFF_JOINT: f64 = 1e-2;
+pub(crate) const OFF_JOINT: f64 = 1e-2;
 /// The most solutions with the spin of the middle of the flight corrected.
 const CORRECTIONS: u32 = 3;
 /// The most for crowds, whose solutions are less exact than that.
@@ -254,7 +254,7 @@ impl Problem<'_> {
                 let (residual, pulled) = (found.residual, found.pulled.clone());
                 first_solved = Some(FirstSolved { residual, pulled, bodies, present, off });
             }
-            let ends = Ends { joints: self.joints, states, span };
+            let ends = Ends { joints: self.joints, states, span, options };
             let missed = ends.miss(system, &found.contacts, &found.pushing, place);
             let counted = missed.iter().filter(|missed| missed.counts);
             found.missed = counted.map(|missed| missed.rate.abs()).fold(0.0, f64::max);

@@ -1,8 +1,12 @@
 //! How far the flights of jointed bodies end from where their joints ask for.
 
+use crate::SimulationOptions;
 use crate::body::rigid_body::RigidBody;
+use crate::flight::attempt::OFF_JOINT;
 use crate::flight::rows::Span;
+use crate::joint::force::TAKEN_BACK;
 use crate::joint::rows::Joined;
+use crate::numbers::is_resolved;
 use d2m_contact::{ContactPoint, JointPart, System};
 use glam::{DQuat, DVec3};
 use std::borrow::Cow;
@@ -17,6 +21,7 @@ pub(crate) struct Ends<'s> {
     pub(crate) joints: &'s [Joined],
     pub(crate) states: &'s [Cow<'s, RigidBody>],
     pub(crate) span: Span,
+    pub(crate) options: &'s SimulationOptions,
 }
 
 /// By how much the rate of a row differs from the one that leads to where its joint asks for.
@@ -35,7 +40,10 @@ struct Flown<'j> {
     ends: [(DVec3, DQuat); 2],
     /// The value at the start.
     value: f64,
-    /// How fast the equations move away from what they should be at the end.
+    /// Do its ends say more than their rounding?
+    is_seen: bool,
+    /// How fast the equations move away from what they should be at the end; without their own rates where that is
+    /// not seen.
     rates: Vec<f64>,
 }
 
@@ -63,13 +71,15 @@ impl Ends<'_> {
                 None => self.fly(joint, [contact.a, contact.b].map(&place), system),
             };
             missed.push(match of.part {
-                JointPart::Equation { number, .. } => Missed { row, rate: flown.rates[number], counts: true },
+                JointPart::Equation { number, .. } => {
+                    let own = if flown.is_seen { 0.0 } else { system.rate(row) };
+                    Missed { row, rate: own + flown.rates[number], counts: true }
+                }
                 JointPart::Rate | JointPart::Value { .. } | JointPart::Force { .. } => {
                     let rate = system.rate(row);
                     let length = self.span.remaining;
-                    let is_seen = length > UNSEEN * self.span.step;
-                    let lag =
-                        if is_seen { flown.mean_rate(contact.normal, rate, length) - rate } else { 0.0 };
+                    let mean = || flown.mean_rate(contact.normal, rate, length);
+                    let lag = if flown.is_seen { mean() - rate } else { 0.0 };
                     let wanted = of.pushing - lag;
                     let counts = contact.impulse != 0.0 || rate < wanted;
                     Missed { row, rate: pushing[row] - wanted, counts }
@@ -88,10 +98,22 @@ impl Ends<'_> {
             let (state, v) = (&self.states[k], &system.bodies[k].velocity);
             (state.position + v.linear * tau, state.turned(v.angular, tau))
         });
-        let aims = joined.aims(starts, tau, self.span.step);
-        let rates = joined.offs(ends).into_iter().zip(aims).map(|(off, aim)| (off - aim) / tau).collect();
+        let step = self.span.step;
+        let is_seen = self.is_seen(joined.extent(starts));
+        let rates = if is_seen {
+            let aims = joined.aims(starts, tau, step);
+            joined.offs(ends).into_iter().zip(aims).map(|(off, aim)| (off - aim) / tau).collect()
+        } else {
+            joined.offs(starts).into_iter().map(|off| TAKEN_BACK * off / step).collect()
+        };
         let value = joined.value(bodies.map(|k| &*self.states[k]));
-        Flown { joined, number, starts, ends, value, rates }
+        Flown { joined, number, starts, ends, value, is_seen, rates }
+    }
+
+    /// Do the ends of a flight say by which rate it misses a joint that lies within this distance of the origin?
+    fn is_seen(&self, extent: f64) -> bool {
+        let length = self.span.remaining;
+        length > UNSEEN * self.span.step && is_resolved(extent, length, OFF_JOINT, self.options)
     }
 }
 

@@ -264,6 +264,12 @@ impl Joined {
         linear.iter().map(along(away)).chain(angular.iter().map(along(tilted))).collect()
     }
 
+    /// No position from which its errors are computed is further from the origin.
+    pub(crate) fn extent(&self, poses: [(DVec3, DQuat); 2]) -> f64 {
+        let far = poses.iter().zip(self.arms).map(|((position, _), arm)| position.length() + arm.length());
+        far.fold(0.0, f64::max)
+    }
+
     /// The directions of the equations: of displacements, and of turns.
     fn directions(&self, qa: DQuat) -> (Vec<DVec3>, Vec<DVec3>) {
         let all = vec![DVec3::X, DVec3::Y, DVec3::Z];

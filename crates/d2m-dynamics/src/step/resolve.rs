@@ -138,7 +138,7 @@ impl Step<'_> {
             let body = &mut self.sim.bodies[i];
             if body.is_kinematic() && (occasion == Occasion::Start || body.horizon <= clock.now) {
                 body.advance(clock.now, self.sim.options.gravity);
-                body.follow(self.end, self.sim.options.gap)?;
+                body.follow(self.end, &self.sim.options)?;
                 self.sim.recorder.change(body.id, body.flight);
             }
         }
