@@ -106,7 +106,9 @@ impl RigidBody {
         if !is_slow(velocity) {
             return Err(StepError::TooFast { body: self.name.to_string(), time: self.time });
         }
-        self.fly(velocity, end);
+        // One that is there already stands still for good: no later step gives it another flight.
+        let horizon = if velocity == Velocity::default() { f64::INFINITY } else { end };
+        self.fly(velocity, horizon);
         Ok(())
     }
 

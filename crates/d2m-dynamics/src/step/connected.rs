@@ -137,11 +137,15 @@ impl Step<'_> {
             group.joints.insert(place, number);
             let pair = joined.bodies.map(|i| sim.bodies[i].at(time));
             joined.look([&pair[0], &pair[1]]);
+            let may_move = |i: usize| sim.bodies[i].is_dynamic() && !sim.bodies[i].held;
+            // No impulse of a joint moves its bodies where none of them is dynamic any more: they may part.
+            if !joined.bodies.into_iter().any(may_move) {
+                continue;
+            }
             joined.acted.begin(time, is_solved_again);
             let ahead = Ahead { spent: self.spent.get(&number).copied().unwrap_or_default(), ..ahead };
             group.contacts.extend(joined.rows(number, [&pair[0], &pair[1]], ahead));
-            let is_new =
-                |i: &usize| !group.is_member[*i] && sim.bodies[*i].is_dynamic() && !sim.bodies[*i].held;
+            let is_new = |i: &usize| !group.is_member[*i] && may_move(*i);
             next.extend(joined.bodies.into_iter().filter(is_new));
         }
         next
