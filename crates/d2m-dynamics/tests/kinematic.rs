@@ -331,3 +331,24 @@ fn the_shortest_steps_throw_nothing_off_a_lift() {
         }
     }
 }
+
+/// A turntable at the origin turns as its motion does, also in a step to the next double: it was faster by up to 8 rad/s there.
+#[test]
+fn the_shortest_steps_turn_nothing_faster() {
+    for (k, short) in
+        [0.0, 1e-16, 1e-15, 1e-14].into_iter().flat_map(|short| (0..16).map(move |k| (k, short)))
+    {
+        let (spin, angle) = (0.3 + 0.01 * f64::from(k), 0.1 * f64::from(k));
+        let turning = ConstantTwist::REST.with_angular_velocity(DVec3::Y * spin);
+        let mut simulation = simulation(Arc::new(turning.with_orientation(DQuat::from_rotation_y(angle))));
+        let table = simulation.ids().next().unwrap();
+        for _ in 0..20 {
+            simulation.step().unwrap();
+        }
+        for short in [short, 0.0, 0.01] {
+            simulation.step_to((simulation.time() + short).max(simulation.time().next_up())).unwrap();
+            let off = simulation.angular_velocity(table) - DVec3::Y * spin;
+            assert!(off.length() * simulation.options().step < 0.01 * GAP, "{spin} {short:e}: {off}");
+        }
+    }
+}

@@ -138,7 +138,7 @@ impl RigidBody {
         let length = end - start;
         let (pose, twist) = motion.motion().pose_and_twist(start);
         let arm = pose.transform_vector(self.center - pose.at);
-        let extent = self.position.length() + arm.length();
+        let extent = self.position.length() + arm.length() + self.radius;
         let velocity = if is_resolved(extent, length, OFF_MOTION, options) {
             let (last_x, last_q) = self.place_by(motion, end);
             Velocity {
