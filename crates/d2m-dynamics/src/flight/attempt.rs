@@ -44,6 +44,9 @@ const LASTING: f64 = 1.0 / 16.0;
 /// The part of the rate that restores the gap that counts beforehand: where the law is not obeyed, nothing
 /// may be restored.
 const RESTORED: f64 = 1.0 / 16.0;
+/// Room is made with at most this many times the kinetic energy that bodies with the rate that is asked for
+/// have: with eight times that speed.
+const ROOM_ENERGY: f64 = 64.0;
 /// How strong a motor that stalls is; the later values are tried where no velocities are found with the
 /// earlier ones, which are too strong for light bodies among heavy ones.
 const STRENGTHS: [f64; 4] = [16.0, 1.0 / 64.0, 1.0 / 65_536.0, 1.0 / 67_108_864.0];
@@ -119,6 +122,33 @@ impl Attempt {
         }
         self.system.take_back(begun);
         None
+    }
+
+    /// Reduces the velocities that make room, on top of the `physical` ones, to [`ROOM_ENERGY`], and says
+    /// whether they had more. The rate asked for is the greatest of the contacts, or `least`.
+    ///
+    /// Contacts that hold a body on all sides may ask for more room than there is. Where their normals are not
+    /// quite in one plane all could be obeyed only by throwing the body out across that plane.
+    pub(crate) fn limit_room(&mut self, physical: &[Velocity], inertia: &[(f64, DMat3)], least: f64) -> bool {
+        let asked =
+            self.found.targets.iter().zip(&self.found.pushing).map(|(target, pushing)| target - pushing);
+        let speed = asked.fold(least, f64::max);
+        let (mut energy, mut most) = (0.0, 0.0);
+        for ((body, physical), (mass, inertia)) in self.system.bodies.iter().zip(physical).zip(inertia) {
+            if body.inverse_mass > 0.0 {
+                let room = body.velocity - *physical;
+                energy += mass * room.linear.length_squared() + room.angular.dot(*inertia * room.angular);
+                most += ROOM_ENERGY * mass * speed * speed;
+            }
+        }
+        let is_limited = energy > most;
+        if is_limited {
+            let part = (most / energy).sqrt();
+            for (body, physical) in self.system.bodies.iter_mut().zip(physical) {
+                body.velocity = *physical + (body.velocity - *physical) * part;
+            }
+        }
+        is_limited
     }
 
     /// Gives the contacts the impulses of the present velocities.

@@ -118,6 +118,7 @@ pub(crate) fn solve(
     let mut physical = velocities(&attempt.system);
     let span = attempt.span;
     if let Some(gained) = attempt.make_room(&inertia) {
+        let is_limited = attempt.limit_room(&physical, &inertia, problem.speed());
         // What accounts may hold, and the energy of the speed that covers a gap in a step.
         let speed = options.gap / options.step;
         let held = |s: &Cow<'_, RigidBody>| {
@@ -130,7 +131,7 @@ pub(crate) fn solve(
             for (body, velocity) in attempt.system.bodies.iter_mut().zip(&physical) {
                 body.velocity = *velocity;
             }
-        } else if gained.abs() > most {
+        } else if !is_limited && gained.abs() > most {
             // Then impulses make the room, as other impulses do, and the account sees to their energy.
             attempt.store(&members);
             rests.fill(Momenta::default());

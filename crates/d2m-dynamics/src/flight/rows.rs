@@ -45,6 +45,8 @@ pub(crate) const LAST: f64 = 1.0 / 64.0;
 /// Rates that make room for rotation there are at most this part of the speeds of the points that meet: a
 /// 256th of their energy.
 const OF_SPEED: f64 = 1.0 / 16.0;
+/// Bodies turn in common where their spins differ by no more than this part of the greater one.
+const IN_COMMON: f64 = 0.25;
 /// The most of a missing gap that a step restores, as a part of the gap.
 const RESTORED: f64 = 0.25;
 
@@ -70,9 +72,9 @@ pub(crate) struct Row {
 /// rate ≥ p (5/8 min(g, d) − d)/τ + m τ/2       if room is shared: p = 4 min(g, d) over the greatest of these, from 1/4 to 1
 /// ```
 ///
-/// The first two are at most a gap in a step, or m τ/2 where a driven body turns into others. Where hardly
-/// any room is left the second is at least m τ, with the sliding along surfaces that turn, up to a part of
-/// the speeds of the points.
+/// The first two are at most a gap in a step, or m τ/2 where a driven body turns into others, and where both
+/// turn in common. Where hardly any room is left the second is at least m τ, with the sliding along surfaces
+/// that turn, up to a part of the speeds of the points.
 pub(crate) fn select<'b>(
     found: &[&ContactPoint],
     span: Span,
@@ -100,9 +102,10 @@ pub(crate) fn select<'b>(
         let spins = [contact.a, contact.b].map(|i| velocity(i).angular);
         let curved = 0.5 * tau * bend(contact, spins, span);
         // At most a gap in a step: in the short rest of one, making room at once would be a jerk. The
-        // rotation of a drive gets its room in any case. Other spins do not: impulses that make room could
-        // raise these without end.
-        let carried = spins.map(|spin| spin.clamp_length_max(drive));
+        // rotation of a drive gets its room in any case, and so does what both turn in common. Other spins do
+        // not: impulses that make room could raise these without end.
+        let carried =
+            if turn_in_common(spins) { spins } else { spins.map(|spin| spin.clamp_length_max(drive)) };
         let is_led = led_into(contact, carried, velocity) > 0.0;
         let led = if is_led { 0.5 * tau * bend(contact, carried, span) } else { 0.0 };
         // Where hardly any room is left all rotation counts: otherwise each flight would end at half of the
@@ -125,32 +128,42 @@ pub(crate) fn select<'b>(
     rows
 }
 
+/// Do two bodies turn alike, as what lies in a tube that spins?
+fn turn_in_common([of_a, of_b]: [DVec3; 2]) -> bool {
+    (of_b - of_a).length() <= IN_COMMON * of_a.length().max(of_b.length())
+}
+
 /// A bound on the acceleration along the normal by these spins ω of the two bodies, whose centers fly straight.
 /// With the arms r of the contact, the way c from one center to the other, and δ the spin of the second body
 /// against the first,
 ///
 /// ```text
 /// |ω_a × n| |ω_a| |r_a| + |ω_b × n| |ω_b| |r_b|                      each for itself
-/// |ω_a × n| |ω_a| |c| + (|ω_a × n| |δ| + |δ × n| (|ω_a| + |δ|)) |r_b|       what both turn in common
+/// |ω_a × n| |ω_a × c| + (|ω_a × n| |δ| + |δ × n| (|ω_a| + |δ|)) |r_b|       what both turn in common
 /// ```
 ///
-/// The second one, and the same with the bodies exchanged, is small for a wheel that turns with its axle. It
-/// counts where the first one asks for more than a gap in a step, which is granted in any case, and where one
-/// body lies in the other: their centers are nearer to each other than half of both arms.
+/// The second one, and the same with the bodies exchanged, is small for a wheel that turns with its axle, and
+/// for a peg in a hole that turns, however far out it is. It counts where the first one asks for more than a
+/// gap in a step, which is granted in any case, and where one body lies about the axis of the other: about the
+/// spin's axis their centers are nearer to each other than half of both arms.
 fn bend(contact: &ContactPoint, [of_a, of_b]: [DVec3; 2], span: Span) -> f64 {
     let across = |spin: DVec3| spin.cross(contact.normal).length();
     let of = |spin: DVec3, arm: DVec3| across(spin) * spin.length() * arm.length();
     let apart = of(of_a, contact.arm_a) + of(of_b, contact.arm_b);
     let is_granted = 0.5 * span.remaining * apart <= contact.gap / span.step;
     let way = contact.arm_a - contact.arm_b;
-    let is_inside = 2.0 * way.length() <= contact.arm_a.length() + contact.arm_b.length();
-    if is_granted || !is_inside {
+    if is_granted {
         return apart;
     }
     let against = of_b - of_a;
     let common = |spin: DVec3, arm: DVec3| {
+        let turned = |arm: DVec3| spin.cross(arm).length();
+        let is_inside = 2.0 * turned(way) <= turned(contact.arm_a) + turned(contact.arm_b);
+        if !is_inside {
+            return apart;
+        }
         let sliding = across(spin) * against.length() + across(against) * (spin.length() + against.length());
-        of(spin, way) + sliding * arm.length()
+        across(spin) * turned(way) + sliding * arm.length()
     };
     apart.min(common(of_a, contact.arm_b)).min(common(of_b, contact.arm_a))
 }
@@ -305,11 +318,19 @@ mod tests {
             let approaches = normal.dot(pull(other, contact.arm_b) - pull(spin, contact.arm_a)).abs();
             assert!(approaches <= bound * (1.0 + 1e-9) + 1e-15, "{approaches} {bound}");
             assert!(bound <= 40.0 * apart, "{bound} {apart}");
+            // However far from each other both centers lie on the axis of the spin that both have, unless the
+            // contact lies near it, too.
+            if apart < 0.1 * spin.cross(arm).length() {
+                let far = ContactPoint { arm_b: arm - center - 9.0 * spin, ..contact };
+                let along = bend(&far, [spin, spin], span);
+                assert!(along <= 10.0 * apart, "{along} {apart}");
+            }
         }
     }
 
-    /// Rotation gets room up to a gap in a step, and the rotation of a drum in any case. A body that turns
-    /// faster in the drum gets no more: that would make it faster still.
+    /// Rotation gets room up to a gap in a step, and the rotation of a drum in any case, also of one that nothing
+    /// drives where the other body turns alike. A body that turns faster in the drum gets no more: that would
+    /// make it faster still.
     #[test]
     fn room_is_made_for_what_drives_turn() {
         let body = |inverse_mass: f64, spin: f64, speed: f64| SolverBody {
@@ -328,6 +349,9 @@ mod tests {
             // center, half as far out as its face, has to go round.
             ([drum, body(1.0, 3.0, 1.5)], 0.5 * 0.01 * 9.0 * 0.5),
             ([drum, body(1.0, 300.0, 0.0)], 0.5 * 0.01 * 9.0 * 0.5),
+            // In a drum that nothing drives: turning like it, and twice as fast.
+            ([body(1.0, 3.0, 0.0), body(1.0, 3.0, 1.5)], 0.5 * 0.01 * 9.0 * 0.5),
+            ([body(1.0, 3.0, 0.0), body(1.0, 6.0, 1.5)], 1e-3),
             // Standing still, and without a drum.
             ([drum, body(1.0, 0.0, 0.0)], 1e-3),
             ([body(1.0, 300.0, 0.0), body(1.0, 300.0, 0.0)], 1e-3),

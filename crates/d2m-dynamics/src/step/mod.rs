@@ -85,6 +85,8 @@ pub(crate) struct Step<'s> {
     /// The impulses of motors so far in this step, by joint, with those that they owe from the last one.
     spent: BTreeMap<usize, f64>,
     replans: Replans,
+    /// How often pairs of bodies that are not driven have met closer than they stopped before, in this step.
+    cramped: BTreeMap<Key, u32>,
     /// The time at which flights end that were planned again.
     planned: Option<f64>,
     expected: Expected,
@@ -134,6 +136,7 @@ impl<'s> Step<'s> {
             bounces: 0,
             spent,
             replans: Replans::default(),
+            cramped: BTreeMap::new(),
             planned: None,
             expected: Expected::default(),
             impulses: Vec::new(),
@@ -230,8 +233,14 @@ impl<'s> Step<'s> {
                     go_on.iter().filter(|event| event.cause != Cause::Horizon).count() as u32;
                 self.bounces += go_on.iter().filter(|event| self.bounces_at(event)).count() as u32;
                 self.let_slip(&go_on);
-                let is_cramped = go_on.iter().any(|event| self.is_cramped(event));
-                let occasion = if is_cramped { Occasion::Cramped } else { Occasion::Event };
+                let cramped: Vec<&Event> = go_on.iter().filter(|event| self.is_cramped(event)).collect();
+                let occasion = if cramped.is_empty() { Occasion::Event } else { Occasion::Cramped };
+                // What a driven body presses into a corner meets closer and closer anyway.
+                let is_free =
+                    |event: &&Event| !event.bodies.into_iter().any(|i| self.sim.bodies[i].is_driven());
+                for event in cramped.into_iter().filter(is_free) {
+                    *self.cramped.entry((event.bodies[0], event.bodies[1])).or_default() += 1;
+                }
                 self.resolve(event.time, seeds, occasion)?;
                 self.solve_expected(event.time)?;
             } else {

@@ -1,7 +1,7 @@
 //! Solves the velocities of the flights that begin at an event.
 
 use super::connected::{Group, Sleepers};
-use super::{FEW_ITEMS, Occasion, Step};
+use super::{FEW_ITEMS, Key, Occasion, Step};
 use crate::StepError;
 use crate::body::rigid_body::RigidBody;
 use crate::flight::group::{CROWD, Push, Solved, islands, solve};
@@ -18,6 +18,8 @@ const MOST_ROUNDS: u32 = 4;
 /// Rounds in which sleeping bodies wake where they are hit; then all sleeping bodies that contacts connect
 /// wake.
 const MOST_HITS: u32 = 16;
+/// Flights of pairs that meet closer and closer are halved so often at most: 64 of them are a step.
+const MOST_SHORTENED: u32 = 6;
 /// A solution that moves no surface point of a body by more than this part of the gap in a step leaves its
 /// flight as it is: a sixty-fourth of [`LEEWAY`], so that all contacts of a body together stay within that.
 const SAME: f64 = 1.0 / 1024.0;
@@ -45,7 +47,8 @@ impl Step<'_> {
         let sleepers = self.sleepers;
         let mut group = Group::new(self.sim.bodies.len(), sleepers);
         let seeds = self.awake_or_driven(seeds, sleepers);
-        let until = if let Occasion::Plan { until } = occasion { until } else { self.end };
+        let until =
+            if let Occasion::Plan { until } = occasion { until } else { self.end_of_flights(time, &seeds) };
         let clock = Clock { now: time, end: until };
         let renewed = if occasion.is_event() { seeds.clone() } else { Vec::new() };
         let is_local = match occasion {
@@ -122,6 +125,17 @@ impl Step<'_> {
             self.sim.recorder.change(self.sim.bodies[i].id, self.sim.bodies[i].flight);
         }
         self.query(time, &changed)
+    }
+
+    /// When flights of these bodies that begin now end: with the step, or sooner where a pair of them has met closer
+    /// and closer in it, each time after half as long. What spins together with a body that lies all round it goes
+    /// on a curve: its straight flights lead into that, from any side, unless they are short.
+    fn end_of_flights(&self, time: f64, bodies: &[usize]) -> f64 {
+        let is_among = |(a, b): &Key| bodies.contains(a) || bodies.contains(b);
+        let times = self.cramped.iter().filter(|(pair, _)| is_among(pair)).map(|(_, &times)| times).max();
+        times.map_or(self.end, |times| {
+            self.end.min(time + (self.end - self.start) / f64::from(1u32 << times.min(MOST_SHORTENED)))
+        })
     }
 
     /// The error that names the fastest body of a solution.
