@@ -144,17 +144,17 @@ fn turn_in_common([of_a, of_b]: [DVec3; 2]) -> bool {
 ///
 /// The second one, and the same with the bodies exchanged, is small for a wheel that turns with its axle, and
 /// for a peg in a hole that turns, however far out it is. It counts where the first one asks for more than a
-/// gap in a step, which is granted in any case, and where one body lies about the axis of the other: about the
-/// spin's axis their centers are nearer to each other than half of both arms.
+/// gap in a step, which is granted in any case, and where both turn in common and one lies about the axis of the
+/// other: about the spin's axis their centers are nearer to each other than half of both arms.
 fn bend(contact: &ContactPoint, [of_a, of_b]: [DVec3; 2], span: Span) -> f64 {
     let across = |spin: DVec3| spin.cross(contact.normal).length();
     let of = |spin: DVec3, arm: DVec3| across(spin) * spin.length() * arm.length();
     let apart = of(of_a, contact.arm_a) + of(of_b, contact.arm_b);
     let is_granted = 0.5 * span.remaining * apart <= contact.gap / span.step;
-    let way = contact.arm_a - contact.arm_b;
-    if is_granted {
+    if is_granted || !turn_in_common([of_a, of_b]) {
         return apart;
     }
+    let way = contact.arm_a - contact.arm_b;
     let against = of_b - of_a;
     let common = |spin: DVec3, arm: DVec3| {
         let turned = |arm: DVec3| spin.cross(arm).length();
