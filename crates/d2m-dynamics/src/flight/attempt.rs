@@ -7,7 +7,7 @@ use crate::flight::common_turn::in_common_turn;
 use crate::flight::problem::Problem;
 use crate::flight::rows::{LAST, Room, Span, select};
 use crate::flight::solved_body::{body_at, moves, still};
-use crate::joint::position_error::Ends;
+use crate::joint::position_error::{Ends, OFF_JOINT};
 use crate::joint::pull::{couples, pulls};
 use d2m_contact::{
     Accuracy, Company, ContactPoint, Momenta, Present, SolverBody, Start, System, Velocity, add_impulses,
@@ -27,9 +27,6 @@ const RELATIVE: f64 = 1.0 / 1024.0;
 /// Where contacts share the room that is left, the relative residual is smaller by this factor: the residual
 /// is taken from the room of the same contacts again and again.
 const SHARED: f64 = 1.0 / 64.0;
-/// Flights may end off their joints by this part of a gap a step. A larger error is not corrected but
-/// diverges, as where the end of a long chain whips round, and shorter flights are solved for.
-pub(crate) const OFF_JOINT: f64 = 1e-2;
 /// The most solutions with the spin of the middle of the flight corrected.
 const CORRECTIONS: u32 = 3;
 /// The most for crowds, whose solutions are less exact than that.

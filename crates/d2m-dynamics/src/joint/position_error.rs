@@ -2,7 +2,6 @@
 
 use crate::SimulationOptions;
 use crate::body::rigid_body::RigidBody;
-use crate::flight::attempt::OFF_JOINT;
 use crate::flight::rows::Span;
 use crate::joint::force::TAKEN_BACK;
 use crate::joint::rows::Joined;
@@ -11,6 +10,9 @@ use d2m_contact::{ContactPoint, JointPart, System};
 use glam::{DQuat, DVec3};
 use std::borrow::Cow;
 
+/// Flights may end off their joints by this part of a gap a step. A larger error is not corrected but
+/// diverges, as where the end of a long chain whips round, and shorter flights are solved for.
+pub(crate) const OFF_JOINT: f64 = 1e-2;
 /// Poses have digits down to 2⁻⁵³ of their size. Of a way that is as long as that in a step less than 2⁻¹² is
 /// known in flights of this part of a step, 2⁻⁴⁰, and in the shortest ones nothing: what such a flight seems to lack
 /// is the rounding of its ends, and it turns by too little to lag.

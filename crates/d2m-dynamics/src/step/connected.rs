@@ -255,12 +255,14 @@ impl Step<'_> {
                 }
                 _ => 0.0,
             };
+            let seen =
+                |points: &Vec<ContactPoint>| points.iter().map(|point| self.seen_at(time, point)).collect();
+            let expected: Option<Vec<ContactPoint>> = self.expected.get(&key).map(seen);
             let gap = self.sim.options.gap;
             let pair = self.sim.pairs.entry(key).or_insert_with(|| Box::new(Pair::new(gap)));
             if let Some(measured) = answer {
                 pair.keep(measured, time, gap);
             }
-            let expected = self.expected.get(&key);
             if pair.contacts.is_empty() && expected.is_none() {
                 continue;
             }
@@ -272,7 +274,7 @@ impl Step<'_> {
                 }
                 point
             };
-            group.contacts.extend(expected.into_iter().flatten().map(with_friction));
+            group.contacts.extend(expected.iter().flatten().map(with_friction));
             group.contacts.extend(pair.contacts.iter().map(with_friction).map(|mut point| {
                 point.impulse *= part;
                 point.sliding = point.sliding.map(|x| x * part);

@@ -8,6 +8,7 @@ use crate::numbers::LEEWAY;
 use crate::pairs::closest_features::{AROUND, measure};
 use d2m_contact::ContactPoint;
 use d2m_mesh::parallel::map_owned;
+use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// The most solutions from one instant, each with the contacts to which the flights of the last one led; four
@@ -41,17 +42,10 @@ impl View<'_> {
     /// only one body moves, the point of that. This changes the rate along the normal by ω times the way by
     /// which the bodies slide along each other before they meet; the distance makes up for it.
     fn seen_now(&self, point: &ContactPoint) -> ContactPoint {
-        let [a, b] = self.bodies;
         let [va, vb] = self.bodies.map(RigidBody::present_velocity);
         let rate = |arm_a, arm_b| point.normal.dot(vb.of_point(arm_b) - va.of_point(arm_a));
         let centers = self.bodies.map(|body| body.pose_at(self.time).translation);
-        let apart = (centers[1] + point.arm_b) - (centers[0] + point.arm_a);
-        let share = match (a.is_dynamic(), b.is_dynamic()) {
-            (true, true) => 0.5,
-            (true, false) => 0.0,
-            (false, _) => 1.0,
-        };
-        let (arm_a, arm_b) = (point.arm_a + apart * share, point.arm_b - apart * (1.0 - share));
+        let (arm_a, arm_b) = to_one_point(point, centers, self.bodies);
         let met = rate(point.arm_a, point.arm_b);
         let differs = rate(arm_a, arm_b) - met;
         let distance = point.distance - met * (self.met - self.time) - differs * (self.end - self.time);
@@ -68,7 +62,30 @@ impl View<'_> {
     }
 }
 
+/// The arms of a contact that both reach to one point: the middle of the two, or, if only one body moves, the
+/// point of that.
+fn to_one_point(point: &ContactPoint, centers: [DVec3; 2], [a, b]: [&RigidBody; 2]) -> (DVec3, DVec3) {
+    let apart = (centers[1] + point.arm_b) - (centers[0] + point.arm_a);
+    let share = match (a.is_dynamic(), b.is_dynamic()) {
+        (true, true) => 0.5,
+        (true, false) => 0.0,
+        (false, _) => 1.0,
+    };
+    (point.arm_a + apart * share, point.arm_b - apart * (1.0 - share))
+}
+
 impl Step<'_> {
+    /// An expected contact for flights that begin at `time`, also if it was seen from an earlier instant: the arms
+    /// of two bodies that impulses move reach to one point then, too, so that these add no angular momentum.
+    pub(super) fn seen_at(&self, time: f64, point: &ContactPoint) -> ContactPoint {
+        let bodies = [point.a, point.b].map(|i| &self.sim.bodies[i]);
+        if self.expected_from == time || !bodies.into_iter().all(RigidBody::is_dynamic) {
+            return *point;
+        }
+        let (arm_a, arm_b) = to_one_point(point, bodies.map(|body| body.at(time).position), bodies);
+        ContactPoint { arm_a, arm_b, ..*point }
+    }
+
     /// Solves the flights that begin at `time` again with the contacts that they are certain to lead to,
     /// where these have no restitution: a body that another one stops anyway is braked so that it reaches
     /// that at the end of the step. This is the non-penetration constraint of time stepping (Anitescu and
@@ -76,7 +93,7 @@ impl Step<'_> {
     /// miss each other, and its targets only allow approach, so it takes energy and adds none. What the
     /// linearisation leaves is an event like others.
     pub(super) fn solve_expected(&mut self, time: f64) -> Result<(), StepError> {
-        self.expected = Expected::default();
+        (self.expected, self.expected_from) = (Expected::default(), time);
         let mut first = None;
         for round in 0..4 * MOST_ROUNDS {
             let events: Vec<Event> = self.heap.iter().map(|event| event.0).collect();
@@ -161,13 +178,35 @@ impl Step<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Body;
     use crate::flight::rows::upright;
+    use crate::listener::Nobody;
+    use crate::{Body, Simulation, SimulationOptions};
     use d2m_bvh::MeshTree;
     use d2m_feature::FeaturePair;
     use d2m_mesh::Faces;
-    use glam::DVec3;
     use std::sync::Arc;
+
+    /// The arms of a contact that was expected at an earlier instant reach to one point between the bodies, where
+    /// they are by now: opposite impulses there add no angular momentum.
+    #[test]
+    fn contacts_seen_earlier_reach_to_one_point() {
+        let tree = Arc::new(MeshTree::new(d2m_shapes::mesh("box?x=1&y=1&z=1").unwrap()));
+        let mut sim = Simulation::new(SimulationOptions::default()).unwrap();
+        let places = [DVec3::ZERO, DVec3::new(0.1, 3.0, 0.2)];
+        for (name, place) in ["one", "other"].into_iter().zip(places) {
+            sim.add(&Body::new(name, Arc::clone(&tree)).with_position(place)).unwrap();
+        }
+        let listener = &mut Nobody;
+        let step = Step::new(&mut sim, 1.0, listener);
+        let point = upright([0, 1]);
+        let now = step.seen_at(0.0, &point);
+        assert_eq!([now.arm_a, now.arm_b], [point.arm_a, point.arm_b]);
+        let later = step.seen_at(0.5, &point);
+        let ends = [(0, later.arm_a), (1, later.arm_b)].map(|(i, arm)| step.sim.bodies[i].position + arm);
+        assert!(ends[0].distance(ends[1]) < 1e-15, "{ends:?}");
+        let before = places[0].midpoint(places[1]) + 0.5 * (point.arm_a + point.arm_b);
+        assert!(ends[0].distance(before) < 1e-15, "{ends:?}");
+    }
 
     /// Where a round leads to a contact that it has obeyed already, the next round would find the same.
     #[test]

@@ -90,6 +90,8 @@ pub(crate) struct Step<'s> {
     /// The time at which flights end that were planned again.
     planned: Option<f64>,
     expected: Expected,
+    /// The instant from which these are seen.
+    expected_from: f64,
     /// The impulses of the present instant. `undoable`: those of resting contacts, which are taken back if
     /// flights are planned again.
     impulses: Vec<ContactPoint>,
@@ -139,6 +141,7 @@ impl<'s> Step<'s> {
             cramped: BTreeMap::new(),
             planned: None,
             expected: Expected::default(),
+            expected_from: start,
             impulses: Vec::new(),
             undoable: Vec::new(),
             unheard: Vec::new(),
