@@ -41,8 +41,8 @@ const LASTING: f64 = 1.0 / 16.0;
 /// The part of the rate that restores the gap that counts beforehand: where the law is not obeyed, nothing
 /// may be restored.
 const RESTORED: f64 = 1.0 / 16.0;
-/// Room is made with at most this many times the kinetic energy that bodies with the rate that is asked for
-/// have: with eight times that speed.
+/// Contacts ask for the rates at which they have to open. The velocities that bring these about have at most this
+/// many times the kinetic energy of the bodies at the greatest of the rates: eight times that speed.
 const ROOM_ENERGY: f64 = 64.0;
 /// How strong a motor that stalls is; the later values are tried where no velocities are found with the
 /// earlier ones, which are too strong for light bodies among heavy ones.
